@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Plants small faults in the sources of check, control and plan, and says whether tests notice them.
 
-    tests/mutation.py [--count N] [--seed S] [--rooms check,control,plan] [--build build/release]
+    tests/mutation.py [--count N] [--seed S] [--rooms check,control,plan] [--build build/mutation]
                       [--minutes M]
 
 Each fault is one change of one place: another comparison, + for -, * for /, && for ||, min for
@@ -10,19 +10,22 @@ chooses the places. All faults are planted at once: each line keeps its own text
 changed text, and the environment variable AYUMI_FAULT chooses the fault that acts. So everything
 is compiled only once. Then each test runs once without a fault, and it is recorded which faults
 it reaches. Each fault is tried with the tests that reach it, those of its room and the quickest
-first, until one of them fails; no more than `--most-seconds` are spent on it. Then the sources
+first, until one of them fails; no more than `--most-seconds` are spent on it. The jobs of
+`ayumi selftest` are such tests, too. Everything is compiled with the assertions of Eigen and of the
+standard library, so that a step beyond the end of an array is noticed. Then the sources
 are put back, also after Ctrl-C. (After kill -9, `git checkout lib` puts them back; so the script
 begins only where git sees no change in lib.)
 
 Only lines are changed that contain a whole statement or a whole condition. A fault that does not
 compile is left out. With `--minutes`, the script tries as many of the faults as fit into this
 time. It prints the share of noticed faults, and the interval in which it lies with 95 %
-probability. It needs python3 and a build folder. The faults that no test has noticed are listed
+probability. It needs python3. The faults that no test has noticed are listed
 at the end with file and line: each needs a test, or a reason why it changes nothing.
 """
 import argparse
 import collections
 import concurrent.futures
+import json
 import math
 import os
 import random
@@ -36,6 +39,8 @@ SOURCE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 # The test programs that cover the rooms (folders of lib/ayumi).
 PROGRAMS = ["check_tests", "limits_tests", "control_tests", "sim_tests", "plan_tests",
             "scenarios_tests"]
+# The program whose `selftest` compares results bit for bit.
+SELFTEST = "ayumi"
 # Largest duration of a test that is run [s].
 LONGEST_TEST = 60.0
 JOBS = min(2, os.cpu_count() or 1)
@@ -229,7 +234,7 @@ class Planted:
     def compile(self):
         """Compiles, and leaves out the faults that do not compile. Returns their number."""
         words = ["cmake", "--build", self.build, "--parallel", str(JOBS),
-                 "--target", *PROGRAMS, "--", "-k0"]
+                 "--target", *PROGRAMS, SELFTEST, "--", "-k0"]
         left_out = 0
         while True:
             result = subprocess.run(words, cwd=SOURCE, stdout=subprocess.PIPE,
@@ -257,8 +262,12 @@ class Test:
 
 def run(build, tests, limit, **environment):
     """Exit code of tests of one program; None where they took longer than `limit` seconds."""
-    words = [os.path.join(build, "tests", tests[0].program), "--gtest_brief=1", "--gtest_fail_fast",
-             "--gtest_filter=" + ":".join(test.name for test in tests)]
+    names = [test.name for test in tests]
+    if tests[0].program == SELFTEST:
+        words = [os.path.join(build, "app", SELFTEST), "selftest", *names, "--threads", "1"]
+    else:
+        words = [os.path.join(build, "tests", tests[0].program), "--gtest_brief=1",
+                 "--gtest_fail_fast", "--gtest_filter=" + ":".join(names)]
     try:
         return subprocess.run(words, cwd=SOURCE, stdout=subprocess.DEVNULL,
                               stderr=subprocess.DEVNULL, timeout=limit, check=False,
@@ -283,7 +292,9 @@ def trace(build, test, count):
 
 
 def all_tests(build):
-    tests = []
+    answer = subprocess.run([os.path.join(build, "app", SELFTEST), "selftest", "--json", "--quiet"],
+                            cwd=SOURCE, capture_output=True, text=True, check=True).stdout
+    tests = [Test(SELFTEST, result["job"]) for result in json.loads(answer)["results"]]
     for program in PROGRAMS:
         listed = subprocess.run([os.path.join(build, "tests", program), "--gtest_list_tests"],
                                 cwd=SOURCE, capture_output=True, text=True, check=True).stdout
@@ -329,7 +340,7 @@ def main():
     parser.add_argument("--count", type=int, default=300)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--rooms", default="check,control,plan")
-    parser.add_argument("--build", default=os.path.join(SOURCE, "build", "release"))
+    parser.add_argument("--build", default=os.path.join(SOURCE, "build", "mutation"))
     parser.add_argument("--minutes", type=float, default=math.inf)
     parser.add_argument("--most-seconds", type=float, default=60)
     options = parser.parse_args()
@@ -346,6 +357,10 @@ def main():
     faults = [chance.choice(line) for line in lines[:options.count]]
     words = [words_of(fault) for fault in faults]
     noticed, unnoticed = 0, []
+    subprocess.run(["cmake", "-S", SOURCE, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
+                    "-DCMAKE_CXX_FLAGS_RELEASE=-O2 -D_GLIBCXX_ASSERTIONS",
+                    "-DAYUMI_BUILD_TESTS=ON"],
+                   stdout=subprocess.DEVNULL, check=True)
     with Planted(faults, build) as planted:
         left_out = planted.compile()
         with concurrent.futures.ThreadPoolExecutor(JOBS) as pool:
@@ -365,7 +380,8 @@ def main():
                 other for other, there in planted.faults.items()
                 if there.path == fault.path and other not in always} or {index}
             reaching = [test for test in tests if test.reached & same]
-            reaching.sort(key=lambda test: not test.program.startswith(fault.room))
+            reaching.sort(key=lambda test: test.program != SELFTEST
+                          and not test.program.startswith(fault.room))
             by = noticed_by(build, index, reaching, options.most_seconds)
             how = "no test reaches it" if not reaching else f"{len(reaching)} tests reach it"
             print(f"noticed by {by}: {words[index]}" if by else

@@ -1,15 +1,21 @@
 // Compares the results of this machine, bit for bit, with those that every machine should give. If
 // a change is meant to change numbers, tests/update_selftest.sh writes the new hashes.
 
+#include <algorithm>
 #include <array>
+#include <memory>
 #include <nlohmann/json.hpp>
 
+#include "ayumi/author/generate/generate.hpp"
 #include "ayumi/base/counted.hpp"
+#include "ayumi/check/likely_mistakes.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/io/run/results_json.hpp"
 #include "ayumi/io/run/sha256.hpp"
 #include "ayumi/io/run/simulation_log_file.hpp"
 #include "ayumi/repair/repair_pattern.hpp"
 #include "ayumi/study/push.hpp"
+#include "option_checks.hpp"
 #include "pattern_input.hpp"
 #include "push_results.hpp"
 
@@ -18,6 +24,11 @@ namespace ayumi::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+/// The options of the command.
+struct SelftestCommand {
+  std::vector<std::string> jobs;  ///< names of the jobs that run; empty for all
+};
 
 struct Job {
   const char* name;
@@ -44,6 +55,158 @@ std::string run_text(const Context& context, const char* name) {
 std::string walk_text(const Context& context) { return run_text(context, "hoap1_walk.json"); }
 std::string jump_text(const Context& context) { return run_text(context, "hoap1_jump.json"); }
 std::string viip_text(const Context& context) { return run_text(context, "hoap1_viip_walk.json"); }
+
+/// The other bundled patterns: hops, steps and displacements by goals of VIIP, and another robot.
+std::string patterns_text(const Context& context) {
+  std::string text;
+  for (const char* name :
+       {"hoap1_hop3.json", "hoap1_jump_forward.json", "hoap1_viip_shift.json",
+        "hoap1_viip_step.json", "humanoid30_walk.json", "humanoid30_viip_shift.json",
+        "humanoid30_viip_step.json", "humanoid30_viip_walk.json"})
+    text += run_text(context, name);
+  return text;
+}
+
+/// Four steps of a walk that turns, with a push, under a law and with noise of the sensors.
+std::string pushed_text(const Context& context, const ControllerSpec& law) {
+  const RobotModel robot = bundled_task(context, "hoap1_walk.json").robot;
+  WalkParameters walk = walk_defaults(robot);
+  walk.steps = 4;
+  walk.turn = 0.1;
+  Pattern pattern = walk_pattern(robot, walk);
+  pattern.controller = law;
+  Push push;
+  push.kind = PushKind::impulse;
+  push.magnitude = 1.5;
+  push.direction = {0.6, -0.8, 0};
+  pattern.scenario = {{.at = 1.4, .duration = 0.05, .what = push}};
+  const Task task = make_task(pattern, robot, "", context.progress(), context.threads);
+  SimulateOptions options = simulate_options(task);
+  options.sensor_noise = true;
+  return plain_log_bytes(simulate(task, options, context.progress()));
+}
+
+/// DTAD with footholds that move, and the baselines.
+std::string laws_text(const Context& context) {
+  std::string text = pushed_text(context, {ControllerKind::dtad, {{"step", 1.0}}});
+  for (const ControllerKind law :
+       {ControllerKind::preview, ControllerKind::foot_guided, ControllerKind::dcm_step})
+    text += pushed_text(context, {law, {}});
+  return text;
+}
+
+// The patterns of the check: short, so that the searches for causes take little time.
+Pattern two_steps(const RobotModel& robot) {
+  WalkParameters walk = walk_defaults(robot);
+  walk.steps = 2;
+  walk.cog_height = 0.23;
+  return walk_pattern(robot, walk);
+}
+Pattern kick(const RobotModel& robot) { return kick_pattern(robot, kick_defaults(robot)); }
+Pattern squat(const RobotModel& robot) { return squat_pattern(robot, squat_defaults(robot)); }
+Pattern sway(const RobotModel& robot) { return sway_pattern(robot, sway_defaults(robot)); }
+Pattern bow(const RobotModel& robot) { return bow_pattern(robot, bow_defaults(robot)); }
+Pattern wave(const RobotModel& robot) { return wave_pattern(robot, wave_defaults(robot)); }
+Pattern rise(const RobotModel& robot) { return rise_pattern(robot, seat_defaults(robot)); }
+Pattern hop(const RobotModel& robot) {
+  JumpParameters jump = jump_defaults(robot);
+  jump.forward = 0.04;
+  return jump_pattern(robot, jump);
+}
+
+// Changes of these patterns, as authors make them by mistake.
+void none(Pattern&) {}
+void land_too_far(Pattern& p) { p.phases[3].swing->to.position.x() += 0.1; }
+void land_on_the_wrong_side(Pattern& p) { p.phases[3].swing->to.position.y() *= -1; }
+void land_inside(Pattern& p) { p.phases[3].swing->to.position.y() *= 0.2; }
+void lift_too_high(Pattern& p) { p.phases[1].swing->lift *= 10; }
+void forget_a_swing(Pattern& p) { p.phases[3].swing.reset(); }
+void stand_on_the_wrong_foot(Pattern& p) { p.phases[3].support = opposite(p.phases[3].support); }
+void stand_too_high(Pattern& p) { p.cog_height *= 1.1; }
+void hurry(Pattern& p) {
+  for (Phase& phase : p.phases) phase.until /= 2;
+  for (Keyframe& key : p.keyframes) key.t /= 2;
+}
+void put_the_zmp_under_the_other_foot(Pattern& p) {
+  for (Keyframe& key : p.keyframes)
+    if (key.t > p.phases[2].until && key.zmp && key.zmp->place != ZmpKey::Place::center) {
+      key.zmp->place = opposite(key.zmp->place);
+      key.zmp->point.y() *= -1;
+      return;
+    }
+}
+void bend_the_trunk_by_degrees(Pattern& p) { p.keyframes.back().torso = Eigen::Vector3d(0, 10, 0); }
+void delay_a_key(Pattern& p) { p.keyframes[p.keyframes.size() / 2].t += 0.3; }
+void lower_a_key(Pattern& p) {
+  for (Keyframe& key : p.keyframes)
+    if (key.cog_height) *key.cog_height -= 0.04;
+}
+void lift_a_foot_key(Pattern& p) {
+  for (Keyframe& key : p.keyframes)
+    for (auto& foot : key.feet)
+      if (foot && foot->position.z() > 0) foot->position.z() *= 3;
+}
+void bend_a_joint(Pattern& p) {
+  for (Keyframe& key : p.keyframes)
+    for (auto& joint : key.joints) joint.second *= 2;
+}
+
+struct Checked {
+  Pattern (*make)(const RobotModel&);
+  void (*slip)(Pattern&);
+};
+const Checked kChecked[] = {{two_steps, none},
+                            {two_steps, land_too_far},
+                            {two_steps, land_on_the_wrong_side},
+                            {two_steps, land_inside},
+                            {two_steps, lift_too_high},
+                            {two_steps, forget_a_swing},
+                            {two_steps, stand_on_the_wrong_foot},
+                            {two_steps, stand_too_high},
+                            {two_steps, hurry},
+                            {two_steps, put_the_zmp_under_the_other_foot},
+                            {two_steps, bend_the_trunk_by_degrees},
+                            {kick, none},
+                            {kick, lift_a_foot_key},
+                            {kick, hurry},
+                            {squat, none},
+
+                            {squat, delay_a_key},
+                            {sway, none},
+
+                            {bow, none},
+                            {bow, delay_a_key},
+                            {wave, none},
+                            {wave, bend_a_joint},
+                            {rise, none},
+                            {rise, hurry},
+                            {hop, none},
+                            {hop, lower_a_key},
+                            {hop, hurry}};
+
+/// The findings of short patterns with and without mistakes, and their likely causes.
+std::string check_text(const Context& context) {
+  const RobotModel robot = bundled_task(context, "hoap1_walk.json").robot;
+  std::string text;
+  for (const Checked& checked : kChecked) {
+    Pattern pattern = checked.make(robot);
+    checked.slip(pattern);
+    CheckOptions options;
+    options.threads = context.threads;
+    try {
+      const Task task = make_task(pattern, robot, "", context.progress(), context.threads);
+      options = check_options(task);
+      const ConsistencyReport report = judge(task, options).report;
+      text += check_json(report) + "\n";
+      if (report.consistent) continue;
+    } catch (const Error& error) {
+      text += std::string(error.what()) + "\n";
+    }
+    for (const Mistake& mistake : likely_mistakes(robot, pattern, options, context.progress()))
+      text += mistake.text() + "\n";
+  }
+  return text;
+}
 
 /// The correction of the walk after its ZMP was moved 36 mm outwards in the fifth step.
 std::string repair_text(const Context& context) {
@@ -77,24 +240,33 @@ std::string push_text(const Context& context) {
   return thresholds_json(cases, push.controllers).dump();
 }
 
-const std::array<Job, 5> kJobs = {{
+const std::array<Job, 8> kJobs = {{
     {"walk", "a walk with a push and DTAD", walk_text,
      "765f4dd12c70ca7772c3d3e405eb1c98eec50d5aa8ac71df575b03c731f07041"},
     {"jump", "a jump", jump_text,
      "418a63c346d3a1c34f23c2cfad2461c15fd69eaecf6c88a64168d34972fd7abd"},
     {"viip", "a walk by VIIP", viip_text,
      "c492255c974be159c378dbffdcf0bc8729e07b029930dbad87b7a5cad4e3dc02"},
+    {"patterns", "the other bundled patterns", patterns_text,
+     "8e36eec634947ba6a151dc7d0430041adce5c44640b528fc72e1d37d3da86280"},
+    {"laws", "other control laws, with a push and noise", laws_text,
+     "4e91ba9af8deaca271e7a2c0abf97df82eb0262852b39cd12301bb246bbee8de"},
+    {"check", "findings and likely causes of patterns with mistakes", check_text,
+     "cd62f6a8dacf9b582850b38d22aa15ffd98c7ad57cb79c1adc19e61fc4919624"},
     {"repair", "a repaired walk", repair_text,
      "16a496a391adf500cd5316e5b640ab9626fce3f2cea47a77d8aa2ad8a57cf4d8"},
     {"push", "limits of pushes", push_text,
      "0bcf10d7962e156ad391cb66afce103f989daec720ee909b72e3ec6195b0f6a7"},
 }};
 
-void compare(Context& context) {
+void compare(Context& context, const SelftestCommand& options) {
   Json results = Json::array();
   std::string table;
   int different = 0;
   for (const Job& job : kJobs) {
+    if (!options.jobs.empty() &&
+        std::find(options.jobs.begin(), options.jobs.end(), job.name) == options.jobs.end())
+      continue;
     const std::string found = sha256(job.text(context));
     const bool same = found == job.sha256;
     different += !same;
@@ -122,8 +294,14 @@ void compare(Context& context) {
 void add_selftest(Command& app, Context& context) {
   Command* command = app.add_subcommand(
       "selftest", "compare the results of this machine with the published ones, bit for bit");
-  command->footer("Examples:\n  ayumi selftest\n  ayumi selftest --json");
-  command->callback([&context] { compare(context); });
+  auto options = std::make_shared<SelftestCommand>();
+  std::vector<std::string> names;
+  for (const Job& job : kJobs) names.push_back(job.name);
+  command->add_option("JOB", options->jobs, "What is computed and compared; by default, all of it.")
+      ->check(one_of(names));
+  command->footer(
+      "Examples:\n  ayumi selftest\n  ayumi selftest walk jump\n  ayumi selftest --json");
+  command->callback([&context, options] { compare(context, *options); });
 }
 
 }  // namespace ayumi::app

@@ -46,9 +46,11 @@ TEST(Selftest, SaysWhatDiffers) {
   const double mass = std::stod(text.substr(at));
   text.replace(at, text.find('"', at) - at, std::to_string(mass * 1.01));
   write(urdf, text);
-  const Output output = selftest({}, {"--robot-path", folder / "robots"}, folder.path());
+  const Output output =
+      selftest({}, {"walk", "jump", "--robot-path", folder / "robots"}, folder.path());
   EXPECT_EQ(output.exit_code, 1) << output.out << output.err;
   EXPECT_NE(output.out.find("different  a walk with a push"), std::string::npos) << output.out;
+  EXPECT_EQ(output.out.find("a walk by VIIP"), std::string::npos) << "only the named jobs run";
 }
 
 }  // namespace
