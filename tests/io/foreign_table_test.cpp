@@ -123,6 +123,25 @@ TEST(ForeignTable, UnitsMayStandInTheHeadRow) {
       "what the column says goes before the option");
 }
 
+// A table without units may be in degrees. Small angles in degrees are possible angles in radians,
+// but the joints would then be too fast.
+TEST(ForeignTable, AnAssumedUnitIsSaid) {
+  const auto units_of = [](const std::string& text, ImportOptions options = {}) {
+    for (const std::string& line : read(text, options).filled)
+      if (line.starts_with("units: ")) return line;
+    return std::string();
+  };
+  EXPECT_EQ(units_of(table("t,l_elbow,r_knee", ',', '.', 1, 0.001)),
+            "units: radians (assumed; --unit deg changes this)");
+  EXPECT_EQ(units_of(table("t,l_elbow,r_knee", ',', '.', 1, 0.05)),
+            "units: radians (assumed; --unit deg changes this; in radians, 2 joints (r_knee, "
+            "l_elbow) would leave the position limits or be faster than the servos, and in degrees "
+            "none of them would, so the file may be in degrees)");
+  EXPECT_EQ(units_of(table("t,l_elbow,r_knee", ',', '.', 1, 0.05), {.degrees = true}),
+            "units: degrees, as --unit says");
+  EXPECT_EQ(units_of(table("t,l_elbow[deg],r_knee[rad]", ',', '.', 1, 0.001)), "");
+}
+
 // Three decimals at 500 rows per second give accelerations that no motion has.
 TEST(ForeignTable, RoughAnglesAreSaid) {
   const auto rough = [](double decimals, ImportOptions options) {

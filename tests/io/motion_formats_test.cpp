@@ -11,6 +11,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
+#include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/io/robot/ztk.hpp"
 #include "ayumi/io/yaml/yaml_tree.hpp"
@@ -150,6 +151,21 @@ TEST(MotionFormats, VariantsOfOtherProgramsAreRead) {
            trajectory.substr(names + 11, points - names - 11) + "      " +
            replaced(trajectory.substr(points), "\n", "\n      ") + "\n",
        "play-motion2", "points, as in ROS 1");
+  // YAML may be written as JSON.
+  std::string json;
+  for (Eigen::Index k = 0; k < written.rows(); ++k) {
+    std::vector<std::string> angles;
+    for (const double angle : written.values.row(k)) angles.push_back(text::exact(angle));
+    json += std::string(k > 0 ? ", " : "") + "{\"positions\": [" + text::join(angles, ", ") +
+            "], \"time_from_start\": " + text::exact(written.times[static_cast<size_t>(k)]) + "}";
+  }
+  same("{\"joint_names\": [\"" + text::join(written.joints, "\", \"") + "\"], \"points\": [" +
+           json + "]}",
+       "ros-trajectory", "JSON");
+  const std::string body = written_as("choreonoid");
+  same(replaced(replaced(body, "JointDisplacement", "MultiJointDisplacementSeq"), "LinkPosition",
+                "MultiLinkPositionSeq"),
+       "choreonoid", "the contents of version 3");
   same("% recorded\n" + written_as("zvs"), "zvs", "a comment");
   same(replaced(written_as("zvs"), "(\\( .*[0-9]) ([-0-9.]+ \\))", "$1\n$2"), "zvs",
        "rows over several lines");
@@ -186,6 +202,20 @@ TEST(MotionFormats, ForeignFilesAreNamed) {
   EXPECT_NE(refusal_of(std::string("\x80\x04\x95\x00", 4)).find("a Python pickle"),
             std::string::npos);
   EXPECT_NE(refusal_of("#ROSBAG V2.0\n").find("a ROS 1 bag"), std::string::npos);
+  EXPECT_NE(refusal_of("\x57\xE0\xE0\x57\x10\xC0\xC0\x10").find("a Havok animation"),
+            std::string::npos);
+  EXPECT_NE(refusal_of("BLENDER-v300").find("a scene of Blender"), std::string::npos);
+  EXPECT_NE(refusal_of("{\"asset\": {\"version\": \"2.0\"}, \"nodes\": []}").find("a glTF scene"),
+            std::string::npos);
+  EXPECT_NE(refusal_of("<?xml version=\"1.0\"?><mvnx version=\"4\"/>").find("Xsens"),
+            std::string::npos);
+  EXPECT_NE(refusal_of(std::string("\0\0\0\x18"
+                                   "ftypmp42",
+                                   12))
+                .find("a film"),
+            std::string::npos);
+  EXPECT_NE(refusal_of(std::string("PK\x03\x04\x14\0\0\0", 8)).find("that was cut off"),
+            std::string::npos);
   EXPECT_NE(refusal_of("Kaydara FBX Binary  ").find("an FBX scene"), std::string::npos);
   EXPECT_NE(refusal_of("<?xml version=\"1.0\"?><a/>", "m.mtnx").find("R+ Motion"),
             std::string::npos);

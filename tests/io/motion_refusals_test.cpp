@@ -262,6 +262,10 @@ TEST(MotionRefusals, Trajectories) {
         "a motion needs joints, positions and times_from_start"},
        {motion(joints + "        positions: [0, 1, 2]\n        times_from_start: [0, 1]\n"),
         "the motion has 3 positions, but 1 joint at 2 times need 2"},
+       {motion(joints + "        positions: [0, nan]\n        times_from_start: [0, 1]\n"),
+        "the positions are not finite numbers"},
+       {motion(joints + "        positions: [0, 1]\n        times_from_start: [0, x]\n"),
+        "the times are not finite numbers"},
        {"play_motion:\n  motions:\n    wave:\n      points:\n        - positions: [0]\n"
         "          time_from_start: 1\n    bow:\n      joints: [l_knee]\n",
         "a motion with points needs joints"}},

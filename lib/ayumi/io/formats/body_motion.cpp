@@ -83,14 +83,13 @@ class BodyMotionReader {
       motion_.rate = rate;
     }
     timed_ = is_true(text_of(component, "has_frame_time", "hasFrameTime"));
-    const bool joints = content == "JointDisplacement" || content == "JointPosition" ||
-                        type == "MultiJointDisplacementSeq";
-    const bool links = content == "LinkPosition" || type == "MultiLinkPositionSeq";
-    if (joints)
+    // Version 3 has its own words, as the content or as the type.
+    const auto is = [&](const char* word) { return content == word || type == word; };
+    if (is("JointDisplacement") || is("JointPosition") || is("MultiJointDisplacementSeq"))
       read_joints(component, *frames);
-    else if (links)
+    else if (is("LinkPosition") || is("MultiLinkPositionSeq"))
       read_root(component, *frames);
-    else if (content == "ZMP" || content == "RelativeZMP" || type == "ZMPSeq")
+    else if (is("ZMP") || is("RelativeZMP") || is("ZMPSeq"))
       read_zmp(component, *frames, content == "RelativeZMP");
     else if (content == "COG" && type == "Vector3Seq")
       motion_.cog = vectors_of(*frames);

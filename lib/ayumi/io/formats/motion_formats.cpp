@@ -55,6 +55,15 @@ const std::vector<Foreign>& foreign_files() {
       {"HIERARCHY", "a BVH recording of a person",
        "retarget it to the robot first; Ayumi writes BVH and does not read it"},
       {"glTF", "a glTF scene", "Ayumi writes glTF and does not read it"},
+      {"\x57\xE0\xE0\x57\x10\xC0\xC0\x10", "a Havok animation (.hkx)", retarget},
+      {"\x1E\x0D\xB0\xCA\xCE\xFA\x11\xD0", "a Havok animation (.hkx)", retarget},
+      {"BLENDER", "a scene of Blender", retarget},
+      {"[Header]\nFileType htr", "an HTR recording of a person", retarget},
+      {"NO_OF_FRAMES", "a recording of markers of Qualisys (.tsv)", retarget},
+      {"%YAML 1.1\n%TAG !u! tag:unity3d.com", "an animation of Unity (.anim)", retarget},
+      {"ULog\x01\x12\x35", "a flight log of PX4 (ULog)", "write its joint angles as CSV"},
+      {"ARROW1", "a file of Apache Arrow", "write its joint angles as CSV"},
+      {"%PDF", "a PDF document", "name the motion file"},
       {"\x80\x02"s, "a Python pickle (.pkl)", arrays},
       {"\x80\x03"s, "a Python pickle (.pkl)", arrays},
       {"\x80\x04"s, "a Python pickle (.pkl)", arrays},
@@ -64,6 +73,9 @@ const std::vector<Foreign>& foreign_files() {
       {"\x1f\x8b", "a file compressed with gzip", "unpack it first"},
       {"\x93NUMPY", "a single NumPy array (.npy)", arrays},
       {"\x89PNG", "a picture", "name the motion file"},
+      {"\xFF\xD8\xFF", "a picture", "name the motion file"},
+      {"GIF8", "a picture", "name the motion file"},
+      {"\x1A\x45\xDF\xA3", "a film", "name the motion file"},
       {"BZh9", "a file compressed with bzip2", "unpack it first"},
       {"\xFD"
        "7zXZ",
@@ -161,6 +173,9 @@ const Foreign* signed_kind(const MotionInput& source) {
   if (source.bytes.size() >= 512 && source.bytes[1] == 'P' &&
       static_cast<unsigned char>(source.bytes[0]) < 16)
     return &c3d;
+  static const Foreign film = {"", "a film or a sound", "name the motion file"};
+  const std::string_view bytes = source.bytes;
+  if (bytes.starts_with("RIFF") || (bytes.size() > 8 && bytes.substr(4, 4) == "ftyp")) return &film;
   static const Foreign opensim = {"", "a motion of OpenSim (.mot, .sto)",
                                   "write its coordinates as a table with a head row, as CSV"};
   if (source.bytes.substr(0, 2000).find("\nendheader") != std::string::npos) return &opensim;
@@ -192,6 +207,10 @@ const Foreign* text_kind(const MotionInput& source) {
   static const Foreign torch = {"", "a file of PyTorch",
                                 "load it in Python and save its arrays with numpy.savez"};
   if (source.bytes.starts_with("PK")) {
+    // Definition: an archive ends with a directory, whose end has this sign.
+    static const Foreign cut = {"", "the beginning of an archive (.npz) that was cut off",
+                                "copy or save it again"};
+    if (source.bytes.find("PK\x05\x06") == std::string::npos) return &cut;
     if (source.bytes.find("[Content_Types].xml") != std::string::npos) return &workbook;
     return source.bytes.find("data.pkl") != std::string::npos ? &torch : &archive;
   }
@@ -201,6 +220,18 @@ const Foreign* text_kind(const MotionInput& source) {
   const std::string head = source.bytes.substr(0, 2000);
   if (head.find("<robot") != std::string::npos) return &urdf;
   if (head.find("<mujoco") != std::string::npos) return &mjcf;
+  static const Foreign xsens = {
+      "", "a recording of Xsens (.mvnx)",
+      "retarget it to the robot first, and write the joint angles as CSV"};
+  static const Foreign collada = {"", "a COLLADA scene",
+                                  "retarget its motion to the robot first, and write the joint "
+                                  "angles as CSV"};
+  if (head.find("<mvnx") != std::string::npos) return &xsens;
+  if (head.find("<COLLADA") != std::string::npos) return &collada;
+  static const Foreign gltf = {"", "a glTF scene", "Ayumi writes glTF and does not read it"};
+  if (head.starts_with("{") && head.find("\"asset\"") != std::string::npos &&
+      source.bytes.find("\"nodes\"") != std::string::npos)
+    return &gltf;
   static const Foreign xml = {"", "an XML file of a kind that Ayumi does not know",
                               "write the motion in one of these formats"};
   if (head.starts_with("<")) return &xml;

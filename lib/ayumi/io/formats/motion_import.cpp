@@ -500,7 +500,9 @@ constexpr double kKeyStep = 0.06;
 constexpr double kKeyTick = 0.01, kActionTick = 0.008;
 
 Rows even_rows(const MotionFile& motion, const Rows& rows, const ImportOptions& options,
-               const std::string& file, double tick, double& dt, std::vector<std::string>& notes) {
+               const std::string& file, const std::string& format, double& dt,
+               std::vector<std::string>& notes) {
+  const double tick = format == "op3-action" ? kActionTick : kKeyTick;
   const std::vector<double> times = times_of(motion, options, file, notes);
   const Spacing spacing = spacing_of(times, motion.time_step);
   const bool keys = (motion.keys && !spacing.even) || spacing.dt > kKeyStep;
@@ -508,12 +510,12 @@ Rows even_rows(const MotionFile& motion, const Rows& rows, const ImportOptions& 
   dt = keys ? tick : spacing.dt;
   const double last = times.back() / dt;
   if (last > static_cast<double>(kMostRows))
-    fail(ErrorCode::bad_file, {file},
-         "the motion lasts " + text::brief(times.back()) + " s, which is more than " +
-             std::to_string(kMostRows) + " rows at this rate; cut the file" +
-             (motion.unit == MotionFile::Unit::of_columns
-                  ? ", or name the column of its times t[ms] if they are in milliseconds"
-                  : ""));
+    fail(
+        ErrorCode::bad_file, {file},
+        "the motion lasts " + text::brief(times.back()) + " s, which is more than " +
+            std::to_string(kMostRows) + " rows at this rate; cut the file" +
+            (format == "csv" ? ", or name the column of its times t[ms] if they are in milliseconds"
+                             : ""));
   const Eigen::Index count =
       spacing.even && !keys ? rows.rows() : static_cast<Eigen::Index>(std::floor(last + 1e-3)) + 1;
   if (keys)
@@ -671,6 +673,33 @@ void smooth_angles(const RobotModel& model, const ImportOptions& options,
   imported.filled.push_back("angles smoothed by at most " + text::brief(degrees) + " deg");
 }
 
+// Joints that leave their position limits, or are faster than their servos, and would do neither if
+// the angles were in degrees. The default profile of the robot is taken.
+std::string hint_of_degrees(const RobotModel& model, const RawMotion& motion) {
+  std::vector<std::string> suspicious;
+  for (int i = 0; i < model.dof_count(); ++i) {
+    const Dof& dof = model.dofs()[static_cast<size_t>(i)];
+    if (dof.prismatic) continue;
+    const Eigen::VectorXd angle = motion.theta.col(i);
+    const Eigen::Index rows = angle.size();
+    const double fastest =
+        rows < 2 ? 0
+                 : (angle.tail(rows - 1) - angle.head(rows - 1)).cwiseAbs().maxCoeff() / motion.dt;
+    const auto possible = [&](double unit) {
+      return unit * angle.minCoeff() >= dof.lower - kRadiansPerDegree &&
+             unit * angle.maxCoeff() <= dof.upper + kRadiansPerDegree &&
+             unit * fastest <= model.limits().speed[i];
+    };
+    if (!possible(1) && possible(kRadiansPerDegree)) suspicious.push_back(dof.name);
+  }
+  if (suspicious.empty()) return "";
+  constexpr size_t kNamed = 3;  // largest number of names. Chosen: a line that a person still reads
+  return "; in radians, " + text::counted(suspicious.size(), "joint") + " (" +
+         text::join_first(suspicious, kNamed) +
+         ") would leave the position limits or be faster than the servos, and in degrees none of "
+         "them would, so the file may be in degrees";
+}
+
 void read_rows(const std::string& bytes, const std::string& file, const RobotModel& model,
                const ImportOptions& options, ImportedMotion& result) {
   const MotionFile read = read_file_of(bytes, file, model, options, result);
@@ -678,13 +707,15 @@ void read_rows(const std::string& bytes, const std::string& file, const RobotMod
   refuse_absurd(read, model, file);
   result.filled.insert(result.filled.end(), read.notes.begin(), read.notes.end());
   const bool assumed = read.unit == MotionFile::Unit::assumed;
+  const size_t unit_note = result.filled.size();
   if (assumed)
     result.filled.push_back(options.degrees ? "units: degrees, as --unit says"
-                                            : "units: radians (assumed; --unit deg changes this)");
+                                            : "units: radians (assumed; --unit deg changes this");
   const Rows rows = rows_of(read, columns, model, options.degrees && assumed);
-  const double tick = result.format == "op3-action" ? kActionTick : kKeyTick;
-  set_motion(even_rows(read, rows, options, file, tick, result.motion.dt, result.filled), read,
-             model.dof_count(), result.motion);
+  set_motion(even_rows(read, rows, options, file, result.format, result.motion.dt, result.filled),
+             read, model.dof_count(), result.motion);
+  if (assumed && !options.degrees)
+    result.filled[unit_note] += hint_of_degrees(model, result.motion) + ")";
   result.motion.support =
       supports_on_ticks(read, static_cast<size_t>(result.motion.theta.rows()), result.motion.dt);
   result.rows = read.file_rows > 0 ? read.file_rows : static_cast<int>(read.rows());

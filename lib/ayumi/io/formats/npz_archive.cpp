@@ -70,6 +70,22 @@ void take_numbers(const std::string& bytes, size_t at, size_t count, NpyArray& a
   }
 }
 
+// The items of an array of this shape in the order of C, whose last index is the fastest. In the
+// file they are in the order of Fortran, whose first index is the fastest.
+template <typename Item>
+std::vector<Item> in_order_of_c(const std::vector<Item>& file, const std::vector<size_t>& shape) {
+  std::vector<Item> items;
+  items.reserve(file.size());
+  std::vector<size_t> index(shape.size(), 0);
+  for (size_t count = 0; count < file.size(); ++count) {
+    size_t at = 0;
+    for (size_t k = shape.size(); k > 0; --k) at = at * shape[k - 1] + index[k - 1];
+    items.push_back(file[at]);
+    for (size_t k = shape.size(); k > 0 && ++index[k - 1] == shape[k - 1]; --k) index[k - 1] = 0;
+  }
+  return items;
+}
+
 // The text between quotes, or the word, after `'key':`.
 std::string value_in_head(const std::string& head, const std::string& key) {
   const size_t at = head.find("'" + key + "':");
@@ -116,11 +132,6 @@ NpyArray array_of(const std::string& bytes, const SourcePlace& place) {
     }
     at = end + 1;
   }
-  if (value_in_head(head, "fortran_order") == "True" && array.shape.size() > 1) {
-    array.refused =
-        "the array has Fortran order (column after column); save numpy.ascontiguousarray(array)";
-    return array;
-  }
   const size_t at = fixed + length;
   size_t width = 0;
   if (type.size() > 2) std::from_chars(type.data() + 2, type.data() + type.size(), width);
@@ -150,11 +161,24 @@ NpyArray array_of(const std::string& bytes, const SourcePlace& place) {
     take_numbers<std::int64_t>(bytes, at, count, array);
   else if (type == "<i4")
     take_numbers<std::int32_t>(bytes, at, count, array);
+  else if (type == "<u4")
+    take_numbers<std::uint32_t>(bytes, at, count, array);
   else if (type == "<i2")
     take_numbers<std::int16_t>(bytes, at, count, array);
+  else if (type == "<u2")
+    take_numbers<std::uint16_t>(bytes, at, count, array);
+  else if (type == "|i1")
+    take_numbers<std::int8_t>(bytes, at, count, array);
+  else if (type == "|u1" || type == "|b1")
+    take_numbers<std::uint8_t>(bytes, at, count, array);
   else
     array.refused =
         "the type '" + type + "' is unknown; save the array as numbers of the type float64";
+  // NumPy chooses this order by itself, for example for root_rot[:, [3, 0, 1, 2]].
+  if (value_in_head(head, "fortran_order") == "True") {
+    array.numbers = in_order_of_c(array.numbers, array.shape);
+    array.words = in_order_of_c(array.words, array.shape);
+  }
   return array;
 }
 

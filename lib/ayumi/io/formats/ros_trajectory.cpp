@@ -90,8 +90,10 @@ Trajectory trajectory_of_lists(const MotionInput& source, const YamlNode& motion
   Trajectory one;
   one.joints = names_in(source, *names);
   const size_t width = one.joints.size(), rows = times->numbers.size();
-  if (!positions->items.empty() || !times->items.empty() ||
-      positions->numbers.size() != rows * width)
+  if (!positions->items.empty())
+    source.refuse(yaml_line(*positions), "the positions are not finite numbers");
+  if (!times->items.empty()) source.refuse(yaml_line(*times), "the times are not finite numbers");
+  if (positions->numbers.size() != rows * width)
     source.refuse(yaml_line(*positions),
                   "the motion has " + text::counted(positions->numbers.size(), "position") +
                       ", but " + text::counted(width, "joint") + " at " +
@@ -203,7 +205,8 @@ const YamlNode* motions_of(const YamlNode& root) {
 }  // namespace
 
 std::string recognize_ros_trajectory(const MotionInput& source) {
-  const bool names = source.bytes.find("joint_names:") != std::string::npos;
+  const bool names = source.bytes.find("joint_names:") != std::string::npos ||
+                     source.bytes.find("\"joint_names\"") != std::string::npos;  // YAML as JSON
   return names && source.bytes.find("time_from_start") != std::string::npos
              ? "the file has joint_names and points with time_from_start"
              : "";

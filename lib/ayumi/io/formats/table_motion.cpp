@@ -26,42 +26,56 @@ bool is_group_column(const std::string& column) {
   return column == "fz[N]";
 }
 
+// Whether a column states the unit of an angle.
+enum class AngleUnit { no_angle, stated, missing };
+
 // Joint columns with a name only, or with a unit, become theta columns. A time column of any name
 // becomes t[s].
-void rename_column(NumberTable& table, Eigen::Index i, const RobotModel& model,
-                   const ImportOptions& options) {
+AngleUnit rename_column(NumberTable& table, Eigen::Index i, const RobotModel& model) {
   std::string& column = table.columns[static_cast<size_t>(i)];
   const ColumnName named = column_name(column);
   if (const std::optional<double> seconds = seconds_of_time_column(column)) {
-    if (column == "t[s]") return;
+    if (column == "t[s]") return AngleUnit::no_angle;
     if (table.find("t[s]") >= 0) {    // t[s] counts, otherwise the first column of times
       column = theta_column(column);  // it is left out like an unknown joint
-      return;
+      return AngleUnit::no_angle;
     }
     if (*seconds != 1) table.values.col(i) *= *seconds;
     column = "t[s]";
-    return;
+    return AngleUnit::no_angle;
   }
-  if (is_group_column(column)) return;
+  if (is_group_column(column)) return AngleUnit::no_angle;
   const bool whole = find_joint(model, column) >= 0;  // the name itself may end like a unit
   std::string joint = whole ? column : named.name;
   if (joint.starts_with("theta.") && !named.unit.empty()) joint = joint.substr(6);
   const std::string unit = whole ? "" : named.unit;
-  if (!(unit.empty() || unit == "deg" || unit == "rad")) return;
+  if (!(unit.empty() || unit == "deg" || unit == "rad")) return AngleUnit::no_angle;
   const int dof = find_joint(model, joint);
   const bool prismatic = dof >= 0 && model.dofs()[static_cast<size_t>(dof)].prismatic;
-  const bool degrees = unit.empty() ? options.degrees : unit == "deg";
-  if (degrees && !prismatic) table.values.col(i) *= kRadiansPerDegree;
+  if (unit == "deg" && !prismatic) table.values.col(i) *= kRadiansPerDegree;
   column = theta_column(joint);
+  if (prismatic) return AngleUnit::no_angle;
+  return unit.empty() ? AngleUnit::missing : AngleUnit::stated;
 }
 
-void rename_columns(NumberTable& table, const RobotModel& model, const ImportOptions& options,
-                    const std::string& file) {
-  for (Eigen::Index i = 0; i < table.values.cols(); ++i) rename_column(table, i, model, options);
+// Returns the origin of the unit. If no column states one, the importer assumes one.
+MotionFile::Unit rename_columns(NumberTable& table, const RobotModel& model,
+                                const ImportOptions& options, const std::string& file) {
+  std::vector<Eigen::Index> without_unit;
+  bool stated = false;
+  for (Eigen::Index i = 0; i < table.values.cols(); ++i) {
+    const AngleUnit unit = rename_column(table, i, model);
+    if (unit == AngleUnit::missing) without_unit.push_back(i);
+    stated |= unit == AngleUnit::stated;
+  }
+  const bool assumed = !stated && !without_unit.empty();
+  if (!assumed && options.degrees)
+    for (const Eigen::Index i : without_unit) table.values.col(i) *= kRadiansPerDegree;
   for (size_t i = 0; i < table.columns.size(); ++i)
     if (std::find(table.columns.begin() + static_cast<std::ptrdiff_t>(i) + 1, table.columns.end(),
                   table.columns[i]) != table.columns.end())
       refuse_table(file, "the column '" + table.columns[i] + "' is given twice");
+  return assumed ? MotionFile::Unit::assumed : MotionFile::Unit::of_columns;
 }
 
 std::vector<Eigen::Vector3d> vectors_of(const NumberTable& table, const std::vector<int>& at) {
@@ -124,7 +138,7 @@ MotionFile read_number_motion(const MotionInput& source, NumberTable table) {
   name_root_columns(
       table, file, [&](const std::string& column) { return find_joint(source.model, column) >= 0; },
       motion.notes);
-  rename_columns(table, source.model, source.options, file);
+  motion.unit = rename_columns(table, source.model, source.options, file);
   const bool timed = table.find("t[s]") >= 0;
   if (!timed && !(source.options.rate > 0))
     refuse_table(file,
@@ -143,7 +157,6 @@ MotionFile read_number_motion(const MotionInput& source, NumberTable table) {
   motion.values.resize(table.values.rows(), static_cast<Eigen::Index>(layout.theta.size()));
   for (size_t j = 0; j < layout.theta.size(); ++j)
     motion.values.col(static_cast<Eigen::Index>(j)) = table.values.col(layout.theta[j]);
-  motion.unit = MotionFile::Unit::of_columns;
   motion.base = bases_of(table, layout, file);
   motion.cog = vectors_of(table, layout.cog);
   motion.zmp = vectors_of(table, layout.zmp);
