@@ -31,7 +31,7 @@ std::string obstacle(const RobotModel& model, const JumpParameters& p, const std
     const CommandSeries series = sample_at_servo_period(model, jump_pattern(model, p));
     CheckOptions options;
     options.profile = profile;
-    const CheckReport report = check_consistency(model, series, options);
+    const ConsistencyReport report = check_consistency(model, series, options);
     if (report.consistent) return {};
     const Finding& first = report.findings.front();
     return kind_place_and_time(first) + ": " + first.hint;
