@@ -7,8 +7,15 @@
 
 namespace ayumi::app {
 
-/// The home posture in pale colours, and the moved joint in full colour. The motion is drawn larger
-/// than it is; the caption states the factor.
+/// A sentence that says whether a joint with a wrong sign jumps when a test begins. If all joints
+/// begin at 0, none does.
+std::string sign_test_words(const RobotModel& model, const std::vector<SignTest>& tests);
+
+/// The side of the robot from which the picture of the test shows it, such as "left".
+std::string sign_test_view(const RobotModel& model, const SignTest& test);
+
+/// The first posture in pale colours, and the moved joint in full colour. The motion is drawn
+/// larger than it is; the caption states the factor.
 Image sign_test_picture(const RobotModel& model, const SignTest& test);
 
 /// A page with the pictures, which are beside it as <name>.png, and the motion that each file

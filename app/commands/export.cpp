@@ -22,6 +22,7 @@
 #include "ayumi/io/run/run_folder.hpp"
 #include "ayumi/io/table/csv_dialect.hpp"
 #include "ayumi/io/table/table.hpp"
+#include "ayumi/io/table/table_note.hpp"
 #include "ayumi/limits/amount_text.hpp"
 #include "ayumi/limits/table_safety.hpp"
 #include "ayumi/render/gltf.hpp"
@@ -50,6 +51,7 @@ struct ExportOptions {
   std::optional<double> interval;    ///< time between two rows, as given [ms]
   std::optional<double> rate;        ///< rate as given [1/s]
   bool pushed = false, force_unsafe = false, sign_test = false;
+  bool posture_given = false;  ///< --posture was given
 };
 
 struct Source {
@@ -479,17 +481,9 @@ std::string unsafe_name(const std::string& output) {
       .string();
 }
 
-/// The file for the warning. A HOAP sequence has no head that the robot's program would skip, so
-/// the warning is written into a file beside it.
-std::string note_beside(const std::string& sequence) { return sequence + ".txt"; }
-
-constexpr const char* kNoteHead = "About the joint table beside this file, by ayumi export\n";
-
-std::string note_text(const TableCaution& caution) {
-  std::string text = kNoteHead;
-  if (!caution.disturbances.empty()) text += "disturbances: " + caution.disturbances + "\n";
-  if (!caution.unfit.empty()) text += "unfit: " + caution.unfit + "\n";
-  return text;
+/// Whether the format is played by a robot but has no head in which a caution could stand.
+bool needs_note(const ExportOptions& options) {
+  return options.format == "hoap" || (motion_format(options) && plays(options));
 }
 
 /// Writes all files of the format, or none if one of them exists.
@@ -512,19 +506,18 @@ void write_table(const ExportOptions& options, const Context& context, const Sou
                  const SafeTable& safe) {
   const TableCaution caution = caution_of_written(source, safe);
   const bool nothing = caution.disturbances.empty() && caution.unfit.empty();
-  const std::string note = note_beside(options.output);
-  const bool old_note = fs::is_regular_file(note) && read_file(note).starts_with(kNoteHead);
-  const bool beside = options.format == "hoap" && !nothing;
+  const std::string note = note_beside(options.output).string();
+  const bool old_note = has_table_note(options.output);
+  const bool beside = needs_note(options) && !nothing;
   if (beside) refuse_overwriting(context, note);
-  if (const MotionFormat* format = motion_format(options)) {
+  if (const MotionFormat* format = motion_format(options))
     write_motion(*format, options, context, source, safe);
-    return;
-  }
-  write_file(options.output,
-             bytes_of(options.format, source, safe.table, caution, options, safe.first));
+  else
+    write_file(options.output,
+               bytes_of(options.format, source, safe.table, caution, options, safe.first));
   if (old_note && !beside) fs::remove(note);  // it was about the previous table
   if (!beside) return;
-  write_file(note, note_text(caution));
+  write_file(note, table_note(caution));
   context.print(note + ": read this note before you send the table to a robot\n");
 }
 
@@ -569,10 +562,14 @@ void export_sign_test(const ExportOptions& options, Context& context) {
   const SequenceLayout layout =
       options.format == "hoap" ? written_layout(model, options.layout) : SequenceLayout{};
   SafetyOptions safety = options.safety;
-  safety.ramp = 0;  // the test begins in the home posture
+  safety.ramp = 0;  // each test begins and ends in the same posture
   safety.hold = options.hold.value_or(0);
   safety.profile = profile_of(options, model, "");
-  const std::vector<SignTest> tests = sign_tests(model, dt);
+  const Eigen::VectorXd start = options.posture_given && safety.from != "first"
+                                    ? model.posture(safety.from)
+                                    : sign_test_start(model);
+  safety.from = "first";
+  const std::vector<SignTest> tests = sign_tests(model, start, dt);
   const std::string extension = options.format == "json" ? ".json" : ".csv";
   const fs::path folder = options.output;
   std::vector<std::pair<fs::path, std::string>> files;
@@ -581,9 +578,9 @@ void export_sign_test(const ExportOptions& options, Context& context) {
     SafeTable safe = make_safe(model, test.table, safety);
     const std::string& joint = model.dofs()[static_cast<size_t>(test.dof)].name;
     if (!safe.report.safe)
-      fail(ErrorCode::bad_model, "sign test of " + joint + ": " +
-                                     text_of(safe.report.violations.front()) +
-                                     "; correct the limits or the home posture of the robot");
+      fail(ErrorCode::bad_model,
+           "sign test of " + joint + ": " + text_of(safe.report.violations.front()) +
+               "; correct the limits of the robot, or the posture in which the test begins");
     safe.table.provenance.robot = name;
     safe.table.provenance.robot_sha256 = model.description().sha256;
     safe.table.provenance.pattern = "sign test of " + joint;
@@ -596,6 +593,7 @@ void export_sign_test(const ExportOptions& options, Context& context) {
     joints.push_back({{"joint", joint},
                       {"file", test.name + extension},
                       {"picture", test.name + ".png"},
+                      {"seen_from", sign_test_view(model, test)},
                       {"from_rad", test.from},
                       {"to_rad", test.to}});
   }
@@ -611,7 +609,8 @@ void export_sign_test(const ExportOptions& options, Context& context) {
   context.print(options.output + ": the folder holds one slow motion for each of " +
                 std::to_string(tests.size()) + " joints (" + options.format +
                 "), and sheet.html with a picture of each motion\n" +
-                "  Hang the robot up before you play the motions.\n");
+                "  Hang the robot up before you play the motions. " +
+                sign_test_words(model, tests) + "\n");
   context.print_json(nlohmann::ordered_json{
       {"format", options.format},
       {"output", options.output},
@@ -710,12 +709,14 @@ void add_export(Command& app, Context& context) {
   command->add_option("--layout", options->layout,
                       "Name of the column layout for --format hoap, one of \"layouts\" in the "
                       "sidecar (default: the first one that has an interval).");
-  command
-      ->add_option(
-          "--posture", options->safety.from,
-          "Posture of the robot before the ramp, or 'first' for the first posture of the motion.")
-      ->type_name("NAME")
-      ->capture_default_str();
+  Option* posture = command
+                        ->add_option("--posture", options->safety.from,
+                                     "Posture of the robot before the ramp, or 'first' for the "
+                                     "first posture of the motion. With --sign-test, the "
+                                     "posture in which each test begins (default: all joints at "
+                                     "0).")
+                        ->type_name("NAME")
+                        ->capture_default_str();
   command->add_option("--profile", options->safety.profile,
                       "Actuator profile by which the table is judged (default: for hoap the first "
                       "profile of the robot, otherwise the profile of the pattern or run).");
@@ -747,7 +748,8 @@ void add_export(Command& app, Context& context) {
       "  ayumi export out/ --format npz --log open_loop -o fall.npz\n"
       "  ayumi export hoap1 --sign-test --format hoap -o signs/\n"
       "  ayumi export patterns/hoap1_walk.json --format json --ramp 3 -o walk_table.json");
-  command->callback([options, command, &context] {
+  command->callback([options, command, posture, &context] {
+    options->posture_given = posture->count() > 0;
     if (options->input.empty() && !options->sign_test)
       fail(ErrorCode::usage, "RUN_OR_PATTERN is missing; see ayumi export --help");
     if (is_log_format(options->format))

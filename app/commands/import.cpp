@@ -10,6 +10,7 @@
 #include "ayumi/io/formats/motion_formats.hpp"
 #include "ayumi/io/import_pattern.hpp"
 #include "ayumi/io/pattern/pattern_table.hpp"
+#include "ayumi/io/table/table_note.hpp"
 #include "option_checks.hpp"
 #include "pattern_input.hpp"
 
@@ -83,6 +84,8 @@ void import_motion(const Context& context, const ImportCommand& options) {
   const std::string name = options.file == "-" ? "standard input" : options.file;
   ImportedPattern imported =
       import_pattern(read_input(options.file, kLargestMotionFile), name, model, options.how);
+  add_caution(imported.caution, read_table_note(options.file));
+  for (const std::string& words : words_of(imported.caution)) imported.filled.push_back(words);
   imported.pattern.robot = robot_as_written(options.robot);
   write_imported(options.out, imported);
   print_import(context, options, imported);

@@ -17,7 +17,9 @@
 #include "ayumi/io/run/run_output.hpp"
 #include "ayumi/io/table/csv_dialect.hpp"
 #include "ayumi/io/table/motion_import.hpp"
+#include "ayumi/io/table/table.hpp"
 #include "ayumi/io/table/table_columns.hpp"
+#include "ayumi/io/table/table_note.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "ayumi/sim/run_caution.hpp"
 #include "option_checks.hpp"
@@ -177,6 +179,13 @@ Json json_of(const SimulationLog& log, const Tracking& tracking) {
   return json;
 }
 
+/// The cautions in the head of the table and in the note beside it.
+TableCaution caution_about(const ReplayCommand& options, const std::string& bytes) {
+  TableCaution caution = read_table_note(options.file);
+  if (has_head(bytes)) add_caution(caution, parse_table_caution(bytes, options.file));
+  return caution;
+}
+
 void write_folder(const ReplayCommand& options, const Context& context,
                   const std::vector<SimulationLog>& logs, const Json& json) {
   RunFolder run;
@@ -209,6 +218,8 @@ void replay(Context& context, const ReplayCommand& options) {
                       " rows, one every " + text::brief(1000 * played.table.dt) + " ms (" +
                       played.format + (played.layout.empty() ? "" : ", " + played.layout) +
                       "), profile " + safety.profile + "\n";
+  const TableCaution caution = caution_about(options, bytes);
+  for (const std::string& line : words_of(caution)) words += "  " + line + "\n";
   if (board.clamps.empty()) words += "  the motor boards send every row to the motors unchanged\n";
   for (size_t i = 0; i < std::min<size_t>(board.clamps.size(), 5); ++i)
     words += "  the motor boards change the target of " + text_of(board.clamps[i]) + "\n";
@@ -245,6 +256,8 @@ void replay(Context& context, const ReplayCommand& options) {
       {"interval_ms", 1000 * played.table.dt},
       {"duration_s", static_cast<double>(played.table.rows.size() - 1) * played.table.dt},
       {"verdict", stands ? "stands" : "falls or does not settle"},
+      {"disturbances", caution.disturbances.empty() ? Json() : Json(caution.disturbances)},
+      {"unfit", caution.unfit.empty() ? Json() : Json(caution.unfit)},
       {"clamps", clamps},
       {"plants", simulated}};
   if (!options.out.empty()) {

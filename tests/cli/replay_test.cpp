@@ -103,7 +103,8 @@ TEST_F(Replay, BadTablesLeaveNothing) {
   EXPECT_EQ(ayumi({"replay", "h.csv", "--robot", "hoap1", "--plant", "bullet"}).exit_code, 2);
 }
 
-// There are one file and one picture per joint; only this joint moves, by 5 degrees.
+// There are one file and one picture per joint; only this joint moves, by 5 degrees. Every test
+// begins with all encoders at 0, because a joint with a wrong sign would otherwise jump.
 TEST_F(Replay, TheSignTestMovesOneJointAtATime) {
   const Output out =
       ayumi({"export", "hoap1", "--sign-test", "--format", "hoap", "-o", "signs", "--json", "-q"});
@@ -122,7 +123,10 @@ TEST_F(Replay, TheSignTestMovesOneJointAtATime) {
       for (std::string cell; std::getline(row, cell, ',') && cell != "R";)
         now.push_back(std::stoi(cell));
       ASSERT_EQ(now.size(), 22u);
-      if (first.empty()) first = now;
+      if (first.empty()) {
+        first = now;
+        EXPECT_EQ(std::count(now.begin() + 2, now.end(), 0), 20) << line;
+      }
       for (size_t m = 0; m < 20; ++m)
         if (std::abs(now[m + 2] - first[m + 2]) > std::abs(most[m]))
           most[m] = now[m + 2] - first[m + 2];
@@ -132,6 +136,76 @@ TEST_F(Replay, TheSignTestMovesOneJointAtATime) {
   }
   EXPECT_EQ(ayumi({"export", "hoap1", "--sign-test", "--format", "hoap", "-o", "signs"}).exit_code,
             3);
+  // Positive angles turn a foot about an axis to the left, upward or forward.
+  const std::string sheet = contents(folder / "signs/sheet.html");
+  for (const char* words :
+       {"r_knee: 0.0 deg to 5.0 deg,<br>clockwise seen from the right",
+        "l_knee: 0.0 deg to 5.0 deg,<br>counterclockwise seen from the left",
+        "l_hip_yaw: 0.0 deg to 5.0 deg,<br>counterclockwise seen from above",
+        "r_elbow: 0.0 deg to -5.0 deg,<br>counterclockwise seen from the right",
+        "r_hip_roll: 0.0 deg to 5.0 deg,<br>counterclockwise seen from the front"})
+    EXPECT_NE(sheet.find(words), std::string::npos) << words << sheet;
+  // The sheet warns if a test begins elsewhere.
+  EXPECT_EQ(contents(folder / "signs/sheet.html").find("Caution"), std::string::npos);
+  const Output home = ayumi(
+      {"export", "hoap1", "--sign-test", "--format", "hoap", "-o", "home", "--posture", "home"});
+  EXPECT_NE(home.out.find("Caution: these joints do not begin at 0: r_hip_pitch (-17.3 deg)"),
+            std::string::npos)
+      << home.out;
+}
+
+// From the right, the right arm and leg would hide the joints of the left side.
+TEST_F(Replay, TheSignTestShowsEachJointFromItsOwnSide) {
+  const Output out =
+      ayumi({"export", "hoap1", "--sign-test", "--format", "csv", "-o", "signs", "--json", "-q"});
+  ASSERT_EQ(out.exit_code, 0) << out.err;
+  const Json tests = Json::parse(out.out).at("tests");
+  ASSERT_EQ(tests.size(), 20u);
+  for (const Json& test : tests) {
+    const std::string joint = test.at("joint"), seen = test.at("seen_from"),
+                      side = joint[0] == 'l' ? "left" : "right";
+    EXPECT_TRUE(seen == "front" || seen.ends_with(side)) << test.dump();
+  }
+}
+
+// The mark of a sequence is in the note beside it. It stays with the motion when the sequence is
+// imported, and the replay says it, too.
+TEST_F(Replay, TheNoteBesideASequenceIsRead) {
+  export_bow("hoap", "h.csv");
+  write(folder / "h.csv.txt",
+        "About the joint table beside this file, by ayumi export\n"
+        "disturbances: 0.5 N s on cog at 1 s\nunfit: the run fell at 2 s\n");
+  const Output replayed = ayumi({"replay", "h.csv", "--robot", "hoap1", "--plant", "ayumi"});
+  EXPECT_NE(replayed.out.find("not for a robot, because the run fell at 2 s"), std::string::npos)
+      << replayed.out;
+  EXPECT_NE(replayed.out.find("reactions to disturbances: 0.5 N s on cog at 1 s"),
+            std::string::npos);
+  const Output imported = ayumi({"import", "h.csv", "--robot", "hoap1", "-o", "i.json"});
+  ASSERT_EQ(imported.exit_code, 0) << imported.err;
+  EXPECT_NE(imported.out.find("the run fell at 2 s"), std::string::npos) << imported.out;
+  const Output refused = ayumi({"export", "i.json", "--format", "hoap", "-o", "again.csv"});
+  EXPECT_EQ(refused.exit_code, 1) << refused.out;
+  EXPECT_NE(refused.out.find("the run fell at 2 s"), std::string::npos) << refused.out;
+  EXPECT_FALSE(fs::exists(folder.path() / "again.csv"));
+  // Another text beside a table is no note.
+  write(folder / "h.csv.txt", "unfit: for a walk\n");
+  EXPECT_EQ(ayumi({"replay", "h.csv", "--robot", "hoap1", "--plant", "ayumi"}).out.find("unfit"),
+            std::string::npos);
+}
+
+// A file for the program of another robot has no head either, so it gets a note as well.
+TEST_F(Replay, EveryFileThatARobotPlaysHasItsNote) {
+  std::string pushed = kBow;
+  pushed.insert(pushed.rfind('}'),
+                ", \"scenario\": [{ \"type\": \"impulse\", \"at\": 1, \"duration\": 0.02, "
+                "\"direction\": [1, 0, 0], \"impulse\": 0.1 }]");
+  write(folder / "q.json", pushed);
+  ASSERT_EQ(ayumi({"run", "q.json", "-o", "run", "--no-pictures", "-q"}).exit_code, 0);
+  const Output out =
+      ayumi({"export", "run", "--format", "ros-trajectory", "--pushed", "-o", "t.yaml"});
+  ASSERT_EQ(out.exit_code, 0) << out.out << out.err;
+  EXPECT_NE(contents(folder / "t.yaml.txt").find("disturbances: 0.1 N s"), std::string::npos)
+      << out.out;
 }
 
 // A recorded walk of a real HOAP-3, replayed as it was sent: the encoders agree within 0.05 degrees

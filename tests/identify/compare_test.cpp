@@ -149,6 +149,65 @@ TEST(Compare, SaysInOneLineWhatIsNotAsItShouldBe) {
   EXPECT_LT(at_half.largest_joint(), 0.05 * kDegree);
 }
 
+TEST(Compare, SaysInOneLineWhatIsWrongWithTheLoads) {
+  const auto notes_with = [&](const auto& change) {
+    SensorTable loads = loads_from(0, 0);
+    change(loads.foot_load);
+    return compared(angles_from(0), loads, {.shift = 0}).notes;
+  };
+  const auto expect_line = [](const std::vector<std::string>& notes, const std::string& words) {
+    ASSERT_EQ(notes.size(), 1u) << words;
+    EXPECT_NE(notes[0].find(words), std::string::npos) << notes[0];
+  };
+  EXPECT_TRUE(notes_with([](Eigen::MatrixXd& load) { load *= 0.6; }).empty());
+  expect_line(notes_with([](Eigen::MatrixXd& load) { load /= 9.80665; }), "much smaller");
+  expect_line(notes_with([](Eigen::MatrixXd& load) { load *= 101.97; }), "much larger");
+  expect_line(notes_with([](Eigen::MatrixXd& load) { load *= -1; }), "are negative");
+  expect_line(notes_with([](Eigen::MatrixXd& load) { load.col(0).swap(load.col(1)); }),
+              "exchange the readings");
+}
+
+TEST(Compare, SaysInOneLineWhatIsWrongWithTheImu) {
+  // The trunk of this robot turns by half a radian and back.
+  SimulationLog log = walk_log();
+  const Index rows = rows_of(log);
+  SensorTable right;
+  right.dt = log.dt;
+  right.acceleration = Eigen::MatrixXd::Zero(rows, 3);
+  right.gyro = Eigen::MatrixXd::Zero(rows, 3);
+  for (Index k = 0; k < rows; ++k) {
+    SimulationSample& s = log.samples[static_cast<size_t>(k)];
+    const double t = log.dt * static_cast<double>(k), rate = std::cos(2 * t);
+    s.state.base.attitude =
+        Eigen::Quaterniond(Eigen::AngleAxisd(0.5 * std::sin(2 * t), Eigen::Vector3d::UnitZ()));
+    s.state.base_velocity.setZero();
+    s.state.base_angular_velocity = {0, 0, rate};
+    s.state.dtheta.setZero();
+    right.gyro(k, 2) = rate;
+    right.acceleration(k, 2) = 9.80665;
+  }
+  const auto notes_of = [&](const SensorTable& sensors) {
+    return compare(hoap1(), log, angles_from(0), sensors, {.shift = 0}, "m.csv").notes;
+  };
+  const auto expect_line = [](const std::vector<std::string>& notes, const std::string& words) {
+    ASSERT_EQ(notes.size(), 1u) << words;
+    EXPECT_NE(notes[0].find(words), std::string::npos) << notes[0];
+  };
+  EXPECT_TRUE(notes_of(right).empty());
+  SensorTable wrong = right;
+  wrong.acceleration /= 9.80665;
+  expect_line(notes_of(wrong), "acceleration is much smaller");
+  wrong = right;
+  wrong.acceleration *= -1;
+  expect_line(notes_of(wrong), "acceleration points down");
+  wrong = right;
+  wrong.gyro /= kDegree;
+  expect_line(notes_of(wrong), "angular velocity is much larger");
+  wrong = right;
+  wrong.gyro *= -1;
+  expect_line(notes_of(wrong), "gyro.z");
+}
+
 TEST(Compare, ARecordingOfAnotherTimeIsRefused) {
   try {
     compared(angles_from(0), {}, {.shift = 100});

@@ -62,8 +62,8 @@ void expect_the_servos_of_the_walk(bool with_loads) {
   ASSERT_EQ(delays.size(), 14u);
   std::sort(delays.begin(), delays.end());
   EXPECT_NEAR(0.5 * (delays[6] + delays[7]), 0.0036, 0.0003);
-  EXPECT_NEAR(delays.front(), 0.0036, 0.0005);
-  EXPECT_NEAR(delays.back(), 0.0036, 0.0005);
+  EXPECT_NEAR(delays.front(), 0.0036, 0.0003);
+  EXPECT_NEAR(delays.back(), 0.0036, 0.0003);
   // The weight shows the stiffness of knees and hip rolls: 2500 to 5000 N m/rad, with an
   // uncertainty of 10 % for the lever, and the two sides agree with each other.
   for (const std::string joint : {"LFE_%_KN_joint", "LR_%_LAA_joint"}) {

@@ -105,25 +105,30 @@ TEST(Identify, FindsTheConstantsOfASyntheticServo) {
 }
 
 // The intervals are those of 95 %: of a hundred noises, at most seven may give an interval without
-// the true value.
+// the true value. This holds for a servo that moves gradually from one command to the next, and for
+// a servo that holds each command until the next one.
 TEST(IdentifyIntervals, CoverTheTruth) {
-  const SyntheticServo servo = soft();
-  const Eigen::VectorXd theta = simulated_angles(servo, 6, excitation);
-  constexpr int kSeeds = 100;
-  std::atomic<int> delay = 0, kp = 0, viscous = 0, coulomb = 0, offset = 0;
-  std::atomic<bool> stop = false;
-  in_parallel(kSeeds, 2, stop, [&](size_t i) {
-    const IdentifiedJoint joint = found(servo, theta, 100 + i);
-    delay += covers(joint.delay, servo.delay);
-    kp += covers(joint.kp, servo.kp);
-    viscous += covers(joint.viscous, servo.viscous);
-    coulomb += covers(joint.coulomb, servo.coulomb);
-    offset += covers(joint.offset, servo.offset);
-  });
-  EXPECT_GE(delay, 93);
-  EXPECT_GE(kp, 93);
-  EXPECT_GE(viscous, 93);
-  EXPECT_GE(coulomb, 93);
+  const auto held = [](double t) { return excitation(0.001 * std::floor(1000 * t + 1e-6)); };
+  for (const bool holds : {false, true}) {
+    const SyntheticServo servo = soft();
+    const Eigen::VectorXd theta =
+        holds ? simulated_angles(servo, 6, held) : simulated_angles(servo, 6, excitation);
+    constexpr int kSeeds = 100;
+    std::atomic<int> delay = 0, kp = 0, viscous = 0, coulomb = 0;
+    std::atomic<bool> stop = false;
+    in_parallel(kSeeds, 2, stop, [&](size_t i) {
+      const IdentifiedJoint joint = found(servo, theta, 100 + i);
+      EXPECT_NEAR(joint.delay.value, servo.delay, 0.0005);
+      delay += covers(joint.delay, servo.delay);
+      kp += covers(joint.kp, servo.kp);
+      viscous += covers(joint.viscous, servo.viscous);
+      coulomb += covers(joint.coulomb, servo.coulomb);
+    });
+    EXPECT_GE(delay, 93) << holds;
+    EXPECT_GE(kp, 93) << holds;
+    EXPECT_GE(viscous, 93) << holds;
+    EXPECT_GE(coulomb, 93) << holds;
+  }
 }
 
 // There is neither a load that changes nor a quick motion: constants that cannot be distinguished

@@ -36,6 +36,19 @@ constexpr double kLanded = 0.15, kInAir = 0.05, kAirTime = 0.05;
 // Largest distance of landings that count as the same [s]. Chosen: a third of a quick step.
 constexpr double kSameLanding = 0.15;
 
+// Factor by which the sizes of measured and simulated values may differ before the recording counts
+// as one in another unit. Chosen: load cells of real robots lose a third of the weight; kilograms
+// differ by a factor of 9.8, and degrees by one of 57.
+constexpr double kOtherUnit = 4;
+
+// Correlation below which a curve counts as one of the opposite sign, or of the other foot. Chosen:
+// noise and an impact that comes later make a correlation small, but not as negative as this.
+constexpr double kOpposite = -0.5;
+
+// Smallest root mean square of a simulated angular velocity at which its unit and sign are judged
+// [rad/s]. Chosen: a robot that stands shows neither.
+constexpr double kTurning = 0.05;
+
 double interpolated(const Eigen::Ref<const VectorXd>& values, double dt, double t) {
   const double at = t / dt;
   const Index last = values.size() - 1;
@@ -232,6 +245,82 @@ void compare_imu(const RobotModel& model, const SimulationLog& log, const Sensor
   add("gyro", "rad/s", sensors.gyro, gyro);
 }
 
+double mean_of(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+double rms_of(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value * value;
+  return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+/// A line for values that are far larger or smaller than those of the run; empty for others.
+std::string unit_complaint(const std::string& what, double measured, double simulated,
+                           const std::string& unit) {
+  if (measured < kOtherUnit * simulated && simulated < kOtherUnit * measured) return "";
+  return what +
+         (measured < simulated
+              ? "much smaller than in the run (" + text::brief(measured, 3) + " and "
+              : "much larger than in the run (" + text::brief(measured, 3) + " and ") +
+         text::brief(simulated, 3) + " " + unit + "); are the readings in " + unit + "?";
+}
+
+/// Lines about units and signs of the loads of the feet, and about feet that are exchanged.
+std::vector<std::string> load_complaints(const std::vector<ComparedCurve>& loads) {
+  const double measured = mean_of(loads[0].measured) + mean_of(loads[1].measured),
+               simulated = mean_of(loads[0].simulated) + mean_of(loads[1].simulated);
+  if (measured < 0)
+    return {"the loads of the feet are negative; change the sign of their readings"};
+  std::vector<std::string> lines;
+  const std::string unit = unit_complaint("the loads of the feet are ", measured, simulated, "N");
+  if (!unit.empty()) lines.push_back(unit);
+  if (loads[2].correlation < kOpposite)
+    lines.emplace_back(
+        "a foot carries the robot when the other foot should; exchange the readings of the left "
+        "and right foot");
+  return lines;
+}
+
+/// Lines about units and signs of the IMU.
+std::vector<std::string> imu_complaints(const std::vector<ComparedCurve>& imu) {
+  std::vector<std::string> lines;
+  Vector3d measured = Vector3d::Zero(), simulated = Vector3d::Zero();
+  double turns_measured = 0, turns_simulated = 0;
+  std::string opposite;
+  for (size_t i = 0; i < imu.size(); ++i) {
+    const ComparedCurve& curve = imu[i];
+    const auto axis = static_cast<Index>(i % 3);
+    if (curve.name.starts_with("acc")) {
+      measured[axis] = mean_of(curve.measured), simulated[axis] = mean_of(curve.simulated);
+      continue;
+    }
+    const double rms = rms_of(curve.simulated);
+    turns_measured += rms_of(curve.measured), turns_simulated += rms;
+    if (rms > kTurning && curve.correlation < kOpposite)
+      opposite += (opposite.empty() ? "" : ", ") + curve.name;
+  }
+  if (simulated.norm() > 0) {
+    const std::string unit =
+        unit_complaint("the acceleration is ", measured.norm(), simulated.norm(), "m/s^2");
+    if (!unit.empty()) lines.push_back(unit);
+    if (measured.dot(simulated) < kOpposite * measured.norm() * simulated.norm())
+      lines.emplace_back(
+          "the acceleration points down, but an accelerometer at rest reads an acceleration of g "
+          "upward; change its sign");
+  }
+  if (turns_simulated > kTurning) {
+    const std::string unit =
+        unit_complaint("the angular velocity is ", turns_measured, turns_simulated, "rad/s");
+    if (!unit.empty()) lines.push_back(unit);
+  }
+  if (!opposite.empty())
+    lines.push_back("the robot turns against the readings of " + opposite + "; change their sign");
+  return lines;
+}
+
 }  // namespace
 
 Comparison compare(const RobotModel& model, const SimulationLog& log,
@@ -309,6 +398,10 @@ Comparison compare(const RobotModel& model, const SimulationLog& log,
   if (sensors.foot_load.rows() > 0 && model.has_soles()) compare_loads(log, sensors, result);
   if (sensors.acceleration.rows() > 0 || sensors.gyro.rows() > 0)
     compare_imu(model, log, sensors, result);
+  for (const std::vector<std::string>& lines :
+       {result.loads.empty() ? std::vector<std::string>() : load_complaints(result.loads),
+        imu_complaints(result.imu)})
+    for (const std::string& line : lines) result.notes.push_back("sensors: " + line);
   return result;
 }
 

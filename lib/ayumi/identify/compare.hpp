@@ -67,9 +67,9 @@ struct CompareOptions {
 };
 
 /// Throws Error(bad_file) "`file`: what" if the recording and the run have no time in common.
-/// Joints whose sign or unit differs, or that do not follow, are noted. The recording contains the
-/// readings of the encoders, so that the zero offsets of the run's servos are subtracted from the
-/// simulated angles.
+/// Joints and sensors whose sign or unit differs, feet whose loads are exchanged, and joints that
+/// do not follow are noted. The recording contains the readings of the encoders, so that the zero
+/// offsets of the run's servos are subtracted from the simulated angles.
 Comparison compare(const RobotModel& model, const SimulationLog& log,
                    const std::optional<AngleTable>& measured, const SensorTable& sensors,
                    const CompareOptions& options, const std::string& file);

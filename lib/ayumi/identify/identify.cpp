@@ -97,6 +97,8 @@ struct TypeFit {
   /// The amount that is subtracted from the delay because the servo may hold each command, and at
   /// the same time the uncertainty of the delay [s]. It is 0 if the recording shows the law.
   double hold = 0;
+  /// Whether the servo holds each command, if the recording of these joints shows it.
+  std::optional<bool> holds = {};
   /// The additional uncertainty of the damping if the recording neither shows nor excludes the law
   /// CommandLaw::stepped [s].
   double step = 0;
@@ -188,6 +190,7 @@ double behind(CommandLaw law, const JointRecording& joint) {
 }
 
 // The servo with inertia and damping that comes nearest to the recording, by the law of `joints`.
+// `simple` is the servo without them that moves gradually from one command to the next.
 // The error has many minima over its constants, so that the best point of a grid is the start.
 ServoFit damped_fit(const std::vector<JointRecording>& joints, const ServoFit& simple,
                     const std::vector<ServoConstants>& guess, double longest_delay) {
@@ -230,36 +233,45 @@ void take_standing_stiffness(const std::vector<JointRecording>& joints, double l
   type.standing = standing;
 }
 
-// A servo may hold each command until the next one, or move from one to the other. If the recording
+// A servo may hold each command until the next one, or move from one to the other. `holds` says
+// which of both it does, if this is known from other joints. If it is not known, and the recording
 // shows the difference, the better law is taken. If it does not, the delay is uncertain, because it
 // would be half an interval shorter for a servo that holds. The result is then the mean of both
 // delays.
-TypeFit fit_type(std::vector<JointRecording> joints, double longest_delay, double weight) {
+TypeFit fit_type(std::vector<JointRecording> joints, double longest_delay, double weight,
+                 std::optional<bool> holds) {
   const std::vector<ServoConstants> guess = first_guess(joints, longest_delay);
   std::vector<ServoConstants> start = guess;
   for (ServoConstants& each : start) each.damping = 0;
-  const double unknown_hold = 0.25 * joints[0].command_dt;
+  const double unknown_hold = holds ? 0 : 0.25 * joints[0].command_dt;
   TypeFit result;
   set_law(joints, CommandLaw::linear, true);
   result.fit = fit_servo(joints, start, holding(true, true), longest_delay);
+  const ServoFit gradual = result.fit;
   result.hold = unknown_hold;
   result.delay_takes_damping = true;
   CommandLaw law = CommandLaw::linear;
-  set_law(joints, CommandLaw::held, true);
-  start = result.fit.constants;
-  for (ServoConstants& each : start)
-    each.delay = std::max(0.0, each.delay - behind(CommandLaw::held, joints[0]));
-  ServoFit held = fit_servo(joints, start, holding(true, true), longest_delay);
-  if (shows_law(result.fit, held) || shows_law(held, result.fit)) result.hold = 0;
-  if (shows_law(held, result.fit)) result.fit = std::move(held), law = CommandLaw::held;
+  if (holds.value_or(true)) {
+    set_law(joints, CommandLaw::held, true);
+    start = result.fit.constants;
+    for (ServoConstants& each : start)
+      each.delay = std::max(0.0, each.delay - behind(CommandLaw::held, joints[0]));
+    ServoFit held = fit_servo(joints, start, holding(true, true), longest_delay);
+    if (shows_law(result.fit, held) || shows_law(held, result.fit)) result.hold = 0;
+    if (holds || shows_law(held, result.fit)) result.fit = std::move(held), law = CommandLaw::held;
+  }
 
-  set_law(joints, CommandLaw::linear, false);
-  ServoFit damped = damped_fit(joints, result.fit, guess, longest_delay);
-  CommandLaw damped_law = CommandLaw::linear;
-  double hold = unknown_hold, step = 0.5 * joints[0].dt;
-  for (const CommandLaw other : {CommandLaw::held, CommandLaw::stepped}) {
+  std::vector<CommandLaw> laws;
+  if (!holds.value_or(false)) laws = {CommandLaw::linear};
+  if (holds.value_or(true)) laws.insert(laws.end(), {CommandLaw::held, CommandLaw::stepped});
+  set_law(joints, laws[0], false);
+  ServoFit damped = damped_fit(joints, gradual, guess, longest_delay);
+  CommandLaw damped_law = laws[0];
+  double hold = unknown_hold, step = laws.size() > 1 ? 0.5 * joints[0].dt : 0.0;
+  for (size_t i = 1; i < laws.size(); ++i) {
+    const CommandLaw other = laws[i];
     set_law(joints, other, false);
-    ServoFit fit = damped_fit(joints, result.fit, guess, longest_delay);
+    ServoFit fit = damped_fit(joints, gradual, guess, longest_delay);
     const bool better = shows_law(fit, damped);
     if (better || (other == CommandLaw::held && shows_law(damped, fit))) hold = 0;
     if (other == CommandLaw::stepped && (better || shows_law(damped, fit))) step = 0;
@@ -273,6 +285,7 @@ TypeFit fit_type(std::vector<JointRecording> joints, double longest_delay, doubl
     law = damped_law;
   }
   set_law(joints, law, result.delay_takes_damping);
+  if (result.hold == 0) result.holds = law != CommandLaw::linear;
   if (load_changes_sign(joints)) {
     start = result.fit.constants;
     for (ServoConstants& each : start) each.backlash = 1e-4;
@@ -293,6 +306,17 @@ TypeFit fit_type(std::vector<JointRecording> joints, double longest_delay, doubl
   if (!result.has_backlash)
     take_standing_stiffness(joints, longest_delay, kCogError * weight, result);
   return result;
+}
+
+// Whether the servos of this robot hold each command, if at least two groups of joints show it and
+// all that show it agree: the motor boards of one robot work alike, so the other joints do the
+// same.
+std::optional<bool> common_law(const std::vector<TypeFit>& fits) {
+  int holding = 0, moving = 0;
+  for (const TypeFit& fit : fits)
+    if (fit.holds) ++(*fit.holds ? holding : moving);
+  if (holding + moving < 2 || (holding > 0 && moving > 0)) return {};
+  return holding > 0;
 }
 
 ServoEstimate estimate(double value, double half_width, double least = -HUGE_VAL) {
@@ -410,12 +434,16 @@ void describe(const TypeFit& type, size_t i, const JointRecording& recording,
     return fit.covariance(static_cast<Index>(a), static_cast<Index>(b));
   };
   const double factor = fit.t_factor;
-  joint.delay = estimate(std::max(0.0, c.delay - type.hold),
-                         factor * deviation(fit, Constant::delay) + type.hold, 0);
   joint.lag = c.delay + c.damping;
   const double s = c.compliance, heavier = std::max(type.heavier.compliance, 1e-12),
                load_share = load_share_error(recording),
                half = compliance_half_width(type, recording);
+  // The whole lag, delay plus damping, is seen best; an error of the damping by a share of the load
+  // changes the delay by the opposite amount.
+  joint.delay = estimate(std::max(0.0, c.delay - type.hold),
+                         factor * deviation(fit, Constant::delay) + type.hold +
+                             load_share * c.damping + std::abs(type.heavier.delay - c.delay),
+                         0);
   joint.kp = {1 / std::max(s, 1e-12), 1 / (s + half), s > half ? 1 / (s - half) : HUGE_VAL,
               half <= kKnown * s};
   const auto by_stiffness = [&](Constant which, double value, double other, double more) {
@@ -561,10 +589,17 @@ Identification identify(const RobotModel& model, const RecordedMotion& motion,
   std::vector<std::vector<size_t>> jobs;
   for (const auto& [name, members] : groups) jobs.push_back(members);
   std::atomic<bool> stop = false;
-  in_parallel(jobs.size(), options.threads, stop, [&](size_t job) {
+  std::vector<TypeFit> fits(jobs.size());
+  const auto fit_job = [&](size_t job, std::optional<bool> holds) {
     std::vector<JointRecording> joints;
     for (const size_t i : jobs[job]) joints.push_back(recordings[i]);
-    const TypeFit fit = fit_type(joints, longest, model.mass() * kGravity);
+    fits[job] = fit_type(joints, longest, model.mass() * kGravity, holds);
+  };
+  in_parallel(jobs.size(), options.threads, stop, [&](size_t job) { fit_job(job, {}); });
+  const std::optional<bool> holds = common_law(fits);
+  in_parallel(jobs.size(), options.threads, stop, [&](size_t job) {
+    if (holds && !fits[job].holds) fit_job(job, holds);
+    const TypeFit& fit = fits[job];
     for (size_t n = 0; n < jobs[job].size(); ++n) {
       const size_t i = jobs[job][n];
       describe(fit, n, recordings[i], model.limits().servo[static_cast<size_t>(dofs[i])],

@@ -2,6 +2,7 @@
 // Warnings that a person needs before a robot receives a joint table.
 
 #include <string>
+#include <vector>
 
 namespace ayumi {
 
@@ -21,6 +22,16 @@ inline void add_caution(TableCaution& caution, const TableCaution& more) {
   };
   add(caution.disturbances, more.disturbances);
   add(caution.unfit, more.unfit);
+}
+
+/// The warnings as sentences of one line each; empty if there are none.
+inline std::vector<std::string> words_of(const TableCaution& caution) {
+  std::vector<std::string> words;
+  if (!caution.unfit.empty())
+    words.push_back("the table is not for a robot, because " + caution.unfit);
+  if (!caution.disturbances.empty())
+    words.push_back("the table contains the reactions to disturbances: " + caution.disturbances);
+  return words;
 }
 
 }  // namespace ayumi

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/dynamics/self_collision.hpp"
 #include "ayumi/math/track.hpp"
 
 namespace ayumi {
@@ -17,10 +19,14 @@ constexpr double kSlide = 0.01;                // distance by which a sliding jo
 // Times of one test [s]. Chosen: 2.5 degrees per second on average, slow enough to be stopped.
 constexpr double kRest = 0.5, kMove = 2, kHold = 1;
 
+double margin_of(const RobotModel& model, const Dof& dof) {
+  return dof.prismatic ? 0 : model.description().soft_limit_margin;
+}
+
 double wanted_change(const RobotModel& model, const Dof& dof, double from) {
   const double size = dof.prismatic ? kSlide : kAngle;
   if (!dof.limited) return size;
-  const double margin = dof.prismatic ? 0 : model.description().soft_limit_margin;
+  const double margin = margin_of(model, dof);
   const double up = dof.upper - margin - from, down = from - (dof.lower + margin);
   if (up >= size) return size;
   if (down >= size) return -size;
@@ -34,9 +40,33 @@ double share_at(double t) {
 
 }  // namespace
 
-std::vector<SignTest> sign_tests(const RobotModel& model, double dt) {
+Eigen::VectorXd sign_test_start(const RobotModel& model) {
+  Eigen::VectorXd start = Eigen::VectorXd::Zero(model.dof_count());
+  for (int j = 0; j < model.dof_count(); ++j) {
+    const Dof& dof = model.dofs()[static_cast<size_t>(j)];
+    if (!dof.limited) continue;
+    const double margin = margin_of(model, dof), lower = dof.lower + margin,
+                 upper = dof.upper - margin;
+    start[j] = lower > upper ? 0.5 * (lower + upper) : std::clamp(0.0, lower, upper);
+  }
+  RobotState state = model.rest_state();
+  state.theta = start;
+  RobotData data(model);
+  update_positions(model, state, data);
+  const CollisionModel collisions(model);
+  for (const CollisionModel::Pair& pair : collisions.pairs()) {
+    if (collisions.clearance(pair, data, 0) >= 0) continue;
+    const auto name = [&](int body) { return model.bodies()[static_cast<size_t>(body)].name; };
+    fail(ErrorCode::bad_model,
+         "robot '" + model.name() + "': " + name(pair.a) + " and " + name(pair.b) +
+             " overlap when every joint is at 0, so a sign test cannot begin there; name another "
+             "first posture with --posture");
+  }
+  return start;
+}
+
+std::vector<SignTest> sign_tests(const RobotModel& model, const Eigen::VectorXd& start, double dt) {
   std::vector<SignTest> tests;
-  const Eigen::VectorXd home = model.posture();
   const auto rows = static_cast<size_t>(std::lround((2 * kRest + 2 * kMove + kHold) / dt)) + 1;
   for (int j = 0; j < model.dof_count(); ++j) {
     const Dof& dof = model.dofs()[static_cast<size_t>(j)];
@@ -45,13 +75,13 @@ std::vector<SignTest> sign_tests(const RobotModel& model, double dt) {
     if (model.limits().has_servo[at] && model.limits().servo[at].kp <= 0) continue;
     SignTest test;
     test.dof = j;
-    test.from = home[j];
-    test.to = home[j] + wanted_change(model, dof, home[j]);
+    test.from = start[j];
+    test.to = start[j] + wanted_change(model, dof, start[j]);
     test.table.dt = dt;
     test.table.joints = model.dof_names();
     for (size_t k = 0; k < rows; ++k) {
       ReferenceRow row;
-      row.theta = home;
+      row.theta = start;
       row.theta[j] += share_at(static_cast<double>(k) * dt) * (test.to - test.from);
       row.contact = {false, false};
       test.table.rows.push_back(std::move(row));

@@ -1,6 +1,7 @@
 #pragma once
 // Tables for the first day with a robot whose encoder signs are not yet verified. There is one
-// slow, small motion for each joint, from the home posture and back, while the robot hangs free.
+// slow, small motion for each joint, and back, while the robot hangs free. The other joints rest at
+// an angle at which their encoders read 0, because there a wrong sign has no effect.
 
 #include <string>
 #include <vector>
@@ -13,15 +14,22 @@ namespace ayumi {
 struct SignTest {
   int dof = 0;
   std::string name;  ///< name of its file, without extension: "04_r_knee"
-  /// Home angle, and angle to which the joint moves before it returns [rad], of sliding joints [m].
+  /// First angle, and angle to which the joint moves before it returns [rad], of sliding joints
+  /// [m].
   double from = 0, to = 0;
   ReferenceTrajectory table;  ///< plain postures without a servo lead; no ground supports the robot
 };
 
+/// The posture in which sign tests begin: every joint at 0, or at the position limit that is
+/// nearest to 0 [rad, m]. In the home posture, a joint with a wrong sign would receive the opposite
+/// of its angle, and would jump by twice this angle, often into its end stop. Throws
+/// Error(bad_model) if parts of the robot overlap in this posture.
+Eigen::VectorXd sign_test_start(const RobotModel& model);
+
 /// One test for every joint with a motor, in the order of the devices (or of the joints if there
-/// are none), with a row every `dt` [s]. The joint moves by 5 degrees (10 mm) in its positive
-/// direction. It moves in the negative direction, or by less, if its position limits require this.
-/// Throws Error(bad_model) if no joint has a motor.
-std::vector<SignTest> sign_tests(const RobotModel& model, double dt);
+/// are none), with a row every `dt` [s]. Each test begins in the posture `start`. The joint moves
+/// by 5 degrees (10 mm) in its positive direction. It moves in the negative direction, or by less,
+/// if its position limits require this. Throws Error(bad_model) if no joint has a motor.
+std::vector<SignTest> sign_tests(const RobotModel& model, const Eigen::VectorXd& start, double dt);
 
 }  // namespace ayumi
