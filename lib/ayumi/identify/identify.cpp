@@ -233,45 +233,43 @@ void take_standing_stiffness(const std::vector<JointRecording>& joints, double l
   type.standing = standing;
 }
 
-// A servo may hold each command until the next one, or move from one to the other. `holds` says
-// which of both it does, if this is known from other joints. If it is not known, and the recording
-// shows the difference, the better law is taken. If it does not, the delay is uncertain, because it
-// would be half an interval shorter for a servo that holds. The result is then the mean of both
-// delays.
+// A servo may hold each command until the next one, or move from one to the other. `gradual` says
+// that it moves, because other joints show it. Otherwise, if the recording shows the difference,
+// the better law is taken. If it does not, the delay is uncertain, because it would be half an
+// interval shorter for a servo that holds. The result is then the mean of both delays.
 TypeFit fit_type(std::vector<JointRecording> joints, double longest_delay, double weight,
-                 std::optional<bool> holds) {
+                 bool gradual) {
   const std::vector<ServoConstants> guess = first_guess(joints, longest_delay);
   std::vector<ServoConstants> start = guess;
   for (ServoConstants& each : start) each.damping = 0;
-  const double unknown_hold = holds ? 0 : 0.25 * joints[0].command_dt;
+  const double unknown_hold = gradual ? 0 : 0.25 * joints[0].command_dt;
   TypeFit result;
   set_law(joints, CommandLaw::linear, true);
   result.fit = fit_servo(joints, start, holding(true, true), longest_delay);
-  const ServoFit gradual = result.fit;
+  const ServoFit simple = result.fit;
   result.hold = unknown_hold;
   result.delay_takes_damping = true;
   CommandLaw law = CommandLaw::linear;
-  if (holds.value_or(true)) {
+  if (!gradual) {
     set_law(joints, CommandLaw::held, true);
     start = result.fit.constants;
     for (ServoConstants& each : start)
       each.delay = std::max(0.0, each.delay - behind(CommandLaw::held, joints[0]));
     ServoFit held = fit_servo(joints, start, holding(true, true), longest_delay);
     if (shows_law(result.fit, held) || shows_law(held, result.fit)) result.hold = 0;
-    if (holds || shows_law(held, result.fit)) result.fit = std::move(held), law = CommandLaw::held;
+    if (shows_law(held, result.fit)) result.fit = std::move(held), law = CommandLaw::held;
   }
 
-  std::vector<CommandLaw> laws;
-  if (!holds.value_or(false)) laws = {CommandLaw::linear};
-  if (holds.value_or(true)) laws.insert(laws.end(), {CommandLaw::held, CommandLaw::stepped});
+  std::vector<CommandLaw> laws = {CommandLaw::linear};
+  if (!gradual) laws.insert(laws.end(), {CommandLaw::held, CommandLaw::stepped});
   set_law(joints, laws[0], false);
-  ServoFit damped = damped_fit(joints, gradual, guess, longest_delay);
+  ServoFit damped = damped_fit(joints, simple, guess, longest_delay);
   CommandLaw damped_law = laws[0];
-  double hold = unknown_hold, step = laws.size() > 1 ? 0.5 * joints[0].dt : 0.0;
+  double hold = unknown_hold, step = gradual ? 0 : 0.5 * joints[0].dt;
   for (size_t i = 1; i < laws.size(); ++i) {
     const CommandLaw other = laws[i];
     set_law(joints, other, false);
-    ServoFit fit = damped_fit(joints, gradual, guess, longest_delay);
+    ServoFit fit = damped_fit(joints, simple, guess, longest_delay);
     const bool better = shows_law(fit, damped);
     if (better || (other == CommandLaw::held && shows_law(damped, fit))) hold = 0;
     if (other == CommandLaw::stepped && (better || shows_law(damped, fit))) step = 0;
@@ -308,15 +306,16 @@ TypeFit fit_type(std::vector<JointRecording> joints, double longest_delay, doubl
   return result;
 }
 
-// Whether the servos of this robot hold each command, if at least two groups of joints show it and
-// all that show it agree: the motor boards of one robot work alike, so the other joints do the
-// same.
-std::optional<bool> common_law(const std::vector<TypeFit>& fits) {
-  int holding = 0, moving = 0;
-  for (const TypeFit& fit : fits)
-    if (fit.holds) ++(*fit.holds ? holding : moving);
-  if (holding + moving < 2 || (holding > 0 && moving > 0)) return {};
-  return holding > 0;
+// Whether the servos of this robot move gradually from one command to the next. At least two groups
+// of joints must show it, and none the opposite: the motor boards of one robot work alike, so the
+// other joints do the same.
+bool all_move_gradually(const std::vector<TypeFit>& fits) {
+  int moving = 0;
+  for (const TypeFit& fit : fits) {
+    if (fit.holds && *fit.holds) return false;
+    moving += fit.holds ? 1 : 0;
+  }
+  return moving > 1;
 }
 
 ServoEstimate estimate(double value, double half_width, double least = -HUGE_VAL) {
@@ -590,15 +589,15 @@ Identification identify(const RobotModel& model, const RecordedMotion& motion,
   for (const auto& [name, members] : groups) jobs.push_back(members);
   std::atomic<bool> stop = false;
   std::vector<TypeFit> fits(jobs.size());
-  const auto fit_job = [&](size_t job, std::optional<bool> holds) {
+  const auto fit_job = [&](size_t job, bool gradual) {
     std::vector<JointRecording> joints;
     for (const size_t i : jobs[job]) joints.push_back(recordings[i]);
-    fits[job] = fit_type(joints, longest, model.mass() * kGravity, holds);
+    fits[job] = fit_type(joints, longest, model.mass() * kGravity, gradual);
   };
-  in_parallel(jobs.size(), options.threads, stop, [&](size_t job) { fit_job(job, {}); });
-  const std::optional<bool> holds = common_law(fits);
+  in_parallel(jobs.size(), options.threads, stop, [&](size_t job) { fit_job(job, false); });
+  const bool gradual = all_move_gradually(fits);
   in_parallel(jobs.size(), options.threads, stop, [&](size_t job) {
-    if (holds && !fits[job].holds) fit_job(job, holds);
+    if (gradual && !fits[job].holds) fit_job(job, true);
     const TypeFit& fit = fits[job];
     for (size_t n = 0; n < jobs[job].size(); ++n) {
       const size_t i = jobs[job][n];
