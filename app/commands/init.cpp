@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "ayumi/base/error.hpp"
@@ -91,13 +92,25 @@ double stiffness_needed(const RobotModel& model) {
 }
 
 // The gains nearest to the defaults with which the robot can stand, if it cannot stand with the
-// defaults.
+// defaults. A robot that cannot stand at all, such as one with four legs, gets no gains.
 SidecarGains gains_for(const RobotModel& model) {
   const std::vector<ServoDescription>& servos = model.limits().servo;
   for (const Side side : {Side::left, Side::right})
     for (const int dof : model.leg(side))
       if (servos[static_cast<size_t>(dof)].kp <= 0) return {};
-  const GainStudy study = study_gains(model);
+  std::optional<GainStudy> standing;
+  try {
+    standing = study_gains(model);
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::internal) throw;
+    SidecarGains none;
+    none.to_do =
+        "Correct the soles and the home posture before you make a motion: the robot cannot stand "
+        "in this posture (" +
+        std::string(error.what()) + ").";
+    return none;
+  }
+  const GainStudy& study = *standing;
   if (study.weakest.analysis.stable) return {};
   SidecarGains result;
   if (const auto stable = nearest_stable_gains(study.loops, study.params)) {

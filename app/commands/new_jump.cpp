@@ -7,6 +7,7 @@
 #include "ayumi/author/generate/generate.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/limits/amount_text.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "ayumi/task/task.hpp"
 #include "new_pattern.hpp"
@@ -24,17 +25,26 @@ struct JumpOptions {
   bool highest = false;
 };
 
-bool passes(const RobotModel& model, const JumpParameters& p, const std::string& profile) {
+// What the check finds first, or why the jump cannot be computed; empty if the jump passes.
+std::string obstacle(const RobotModel& model, const JumpParameters& p, const std::string& profile) {
   try {
     const CommandSeries series = sample_at_servo_period(model, jump_pattern(model, p));
     CheckOptions options;
     options.profile = profile;
-    return check_consistency(model, series, options).consistent;
+    const ConsistencyReport report = check_consistency(model, series, options);
+    if (report.consistent) return {};
+    const Finding& first = report.findings.front();
+    return kind_place_and_time(first) + ": " + first.hint;
   } catch (const Error& error) {
     // The jump is out of the legs' reach, or there is no push of this shape.
-    if (error.code() == ErrorCode::bad_pattern || error.code() == ErrorCode::usage) return false;
+    if (error.code() == ErrorCode::bad_pattern || error.code() == ErrorCode::usage)
+      return error.what();
     throw;
   }
+}
+
+bool passes(const RobotModel& model, const JumpParameters& p, const std::string& profile) {
+  return obstacle(model, p, profile).empty();
 }
 
 // The first profile with which the check finds no error; empty if no profile is enough.
@@ -81,6 +91,17 @@ std::string lower_jump(const RobotModel& model, JumpParameters& p, const JumpOpt
       }
   p = asked;
   return {};
+}
+
+// What stands in the way of a low jump that is otherwise the default one.
+std::string obstacle_of_low_jump(const RobotModel& model, JumpParameters p) {
+  // Share of the height. Chosen: the lowest share that lower_jump() tries.
+  constexpr double kLow = 0.1;
+  p.height *= kLow;
+  const std::string why = obstacle(model, p, model.profile_names().front());
+  if (why.empty()) return "\n";
+  return "Even a jump of " + text::brief(1e3 * p.height, 2) +
+         " mm is refused, with the default stoop and COG height, because of " + why + "\n";
 }
 
 // Resolution of the search for the highest jump [m]. Chosen: 1 % of the default height (30 mm).
@@ -185,8 +206,8 @@ void new_jump(Context& context, JumpOptions options) {
                   "another --stoop or another --cog-height. `ayumi check` names the limits that "
                   "the jump exceeds\n"
                 : "No jump of 1 mm or more passes the check, from any COG height and with "
-                  "any stoop that was tried, so these actuators cannot jump. `ayumi "
-                  "check` names the limits that the jump exceeds\n");
+                  "any stoop that was tried. " +
+                      obstacle_of_low_jump(model, p));
       else
         context.print("These values were found: --height " + text::brief(p.height) +
                       " m, --stoop " + text::brief(p.stoop) + " m, --cog-height " +

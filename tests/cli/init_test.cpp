@@ -33,6 +33,51 @@ TEST(Init, ThreeCommandsToAWalk) {
   expect_walks_in_three_commands({.name = "opposed", .opposed = true, .placeholders = true});
 }
 
+// Knees of two coupled joints, legs of seven joints, hips whose yaw axes are inclined, and feet
+// with toes.
+TEST(Init, ThreeCommandsToAWalkOfUnusualLegs) {
+  expect_walks_in_three_commands({.name = "tandem", .tandem_knee = true});
+  expect_walks_in_three_commands({.name = "seven", .hips = "yrpt"});
+  expect_walks_in_three_commands({.name = "inclined", .hips = "irp", .opposed = true});
+  expect_walks_in_three_commands({.name = "toes", .toes = true});
+}
+
+// Ayumi cannot move a robot with four legs, but it says so in the sidecar's to-do list.
+TEST(Init, FourLegsGetASidecar) {
+  std::string urdf = "<robot name=\"four\">";
+  const auto link = [&](const std::string& name, const std::string& size) {
+    urdf += "<link name=\"" + name +
+            "\"><inertial><mass value=\"1\"/><inertia ixx=\"0.004\" iyy=\"0.004\" izz=\"0.004\" "
+            "ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial><collision><geometry><box size=\"" +
+            size + "\"/></geometry></collision></link>";
+  };
+  const auto joint = [&](const std::string& parent, const std::string& child,
+                         const std::string& place, const std::string& axis) {
+    urdf += "<joint name=\"" + child + "_joint\" type=\"revolute\"><parent link=\"" + parent +
+            "\"/><child link=\"" + child + "\"/><origin xyz=\"" + place + "\"/><axis xyz=\"" +
+            axis + "\"/><limit lower=\"-1\" upper=\"1\" effort=\"40\" velocity=\"9\"/></joint>";
+  };
+  link("base", "0.5 0.2 0.1");
+  for (const std::string end : {"fore", "hind"})
+    for (const std::string side : {"left", "right"}) {
+      const std::string leg = end + "_" + side;
+      link(leg + "_hip", "0.04 0.04 0.04");
+      link(leg + "_thigh", "0.04 0.04 0.2");
+      link(leg + "_shank", "0.04 0.04 0.2");
+      joint("base", leg + "_hip",
+            std::string(end == "fore" ? "0.2" : "-0.2") + (side == "left" ? " 0.1 0" : " -0.1 0"),
+            "1 0 0");
+      joint(leg + "_hip", leg + "_thigh", "0 0 -0.1", "0 1 0");
+      joint(leg + "_thigh", leg + "_shank", "0 0 -0.2", "0 1 0");
+    }
+  Folder folder;
+  write(folder / "four.urdf", urdf + "</robot>");
+  const Output init = ayumi(folder, {"init", "four.urdf", "-o", "robot"});
+  EXPECT_EQ(init.exit_code, 0) << init.err;
+  EXPECT_NE(init.out.find("Ayumi moves robots that walk on two feet"), std::string::npos);
+  EXPECT_NE(init.out.find("the robot cannot stand in this posture"), std::string::npos) << init.out;
+}
+
 // Arms that hang beside the thighs when joints are at 0 are moved aside, so that the legs can walk.
 TEST(Init, ArmsAreClearOfTheLegs) {
   Folder folder;

@@ -6,6 +6,7 @@
 #include "ayumi/math/rotation.hpp"
 #include "tests/support/biped.hpp"
 #include "tests/support/random_robot.hpp"
+#include "tests/support/urdf_biped.hpp"
 
 namespace ayumi {
 namespace {
@@ -50,6 +51,36 @@ void expect_round_trip(const RobotModel& model, unsigned seed) {
 }
 
 TEST(InverseKinematics, MeetsRandomTargets) { expect_round_trip(test::biped(), 1); }
+
+// A knee of two joints, of which the second mimics the first, is one joint of the leg.
+TEST(InverseKinematics, MeetsRandomTargetsWithMimicJointsInTheLegs) {
+  const RobotModel model = test::standing_model({.tandem_knee = true});
+  EXPECT_EQ(model.leg(Side::left).size(), 6u);
+  expect_round_trip(model, 2);
+}
+
+// An inclined yaw axis of the hip, as NAO has, is no second hip pitch, so the knee is found.
+TEST(InverseKinematics, FindsTheKneesBelowInclinedHips) {
+  const RobotModel model = test::standing_model({.hips = "irp"});
+  const InverseKinematics ik(model, Eigen::VectorXd::Zero(model.dof_count()));
+  EXPECT_EQ(model.dofs()[ik.knee(Side::left)].name, "l_knee");
+  EXPECT_EQ(model.dofs()[ik.knee(Side::right)].name, "r_knee");
+  expect_round_trip(model, 4);
+}
+
+// A leg of seven joints has infinitely many postures for one place of its foot. So one joint keeps
+// its angle, and the solution does not depend on the guess.
+TEST(InverseKinematics, MeetsRandomTargetsWithLegsOfSevenJoints) {
+  const RobotModel model = test::standing_model({.hips = "yrpt"});
+  EXPECT_EQ(model.leg(Side::left).size(), 7u);
+  const InverseKinematics ik(model, model.posture());
+  for (const Side side : kSides) {
+    EXPECT_EQ(ik.leg(side).size(), 6u);
+    EXPECT_FALSE(ik.solves(model.find_dof(side == Side::left ? "l_thigh_turn" : "r_thigh_turn")));
+  }
+  EXPECT_FALSE(ik.lacks_joints());
+  expect_round_trip(model, 3);
+}
 
 // The determinant of the Jacobian of a leg of six joints.
 double leg_determinant(const RobotModel& model, const InverseKinematics& ik, const RobotData& data,
@@ -121,7 +152,7 @@ TEST(InverseKinematics, TrunkAboveAWaistJoint) {
   expect_round_trip(test::biped({.waist = true}), 2);
 }
 
-// Targets of legs with a seventh joint are reached as well, by damped least squares.
+// Targets of legs with a seventh joint are reached as well, with six of the joints.
 TEST(InverseKinematics, SevenJointLegs) {
   RobotDescription robot = test::biped_description();
   for (const std::string s : {"l_", "r_"}) {
@@ -133,7 +164,8 @@ TEST(InverseKinematics, SevenJointLegs) {
   }
   const RobotModel model(robot);
   const InverseKinematics ik(model, model.posture());
-  EXPECT_EQ(ik.leg(Side::left).size(), 7u);
+  EXPECT_EQ(model.leg(Side::left).size(), 7u);
+  EXPECT_EQ(ik.leg(Side::left).size(), 6u);
   RobotData data(model);
   RobotState state = model.rest_state();
   update_positions(model, state, data);

@@ -217,6 +217,23 @@ TEST(FirstSidecar, PlaceholdersAreNamed) {
   EXPECT_TRUE(guess({}, folder).placeholders.empty());
 }
 
+// The limits of the arms may be true although those of the legs are placeholders.
+TEST(FirstSidecar, PlaceholdersOfTheLegsAloneAreNamed) {
+  const TemporaryFolder folder;
+  std::string urdf = UrdfBiped{.placeholders = true}.text();
+  for (const char* const side : {"l_", "r_"}) {
+    const size_t joint = urdf.find("<joint name=\"" + std::string(side) + "shoulder\"");
+    ASSERT_NE(joint, std::string::npos);
+    const size_t limit = urdf.find("<limit", joint);
+    urdf.replace(limit, urdf.find("/>", limit) - limit,
+                 "<limit lower=\"-2.5\" upper=\"2.5\" effort=\"3\" velocity=\"8\"");
+  }
+  const RobotModel model(load_robot_description(folder.write("legs.urdf", urdf).string()));
+  const std::vector<PlaceholderLimits> found = placeholder_limits(model);
+  ASSERT_EQ(found.size(), 3u);
+  for (const PlaceholderLimits& each : found) EXPECT_EQ(each.joints.size(), 12u) << each.what;
+}
+
 // The sidecar that is written reads back as the values that were guessed for the bare URDF.
 TEST(FirstSidecar, ReadsBackAsItWasGuessed) {
   const TemporaryFolder folder;

@@ -8,14 +8,17 @@
 #include <string>
 
 #include "ayumi/base/text.hpp"
+#include "ayumi/io/robot/urdf.hpp"
+#include "ayumi/model/robot_model.hpp"
 
 namespace ayumi::test {
 
 struct UrdfBiped {
   std::string name = "robot";
-  double size = 1;            ///< factor on lengths
-  double mass = 1;            ///< factor on masses
-  std::string hips = "yrp";   ///< order of yaw, roll and pitch from the trunk outwards
+  double size = 1;  ///< factor on lengths
+  double mass = 1;  ///< factor on masses
+  /// Order of yaw, inclined yaw (i), roll, pitch and turn of the thigh (t) from the trunk outwards.
+  std::string hips = "yrp";
   double facing = 0;          ///< turn of the whole robot about z [rad]
   bool opposed = false;       ///< axes of the right leg point the other way
   bool ankle_roll = true;     ///< without it, legs have five joints
@@ -23,6 +26,8 @@ struct UrdfBiped {
   bool placeholders = false;  ///< +-162 deg, 100 rad/s and 1000 N m for every joint
   bool spheres = false;       ///< feet touch with four spheres of 5 mm radius
   bool rollers = false;       ///< feet touch with two cylinders that lie along them
+  bool tandem_knee = false;   ///< the knee has two joints, and the second one mimics the first
+  bool toes = false;          ///< a toe at the front of each foot touches the ground
   std::string left = "l_", right = "r_";
   double hip = 0.05, thigh = 0.12, shank = 0.12, ankle = 0.04, foot_length = 0.13,
          foot_width = 0.07;    ///< width of the feet [m]
@@ -102,12 +107,24 @@ struct UrdfBiped {
           joint(side + "hip_yaw", parent, child, 0, at, 0, 0, 0, 1, -1, 1);
         else if (hips[i] == 'r')
           joint(side + "hip_roll", parent, child, 0, at, 0, 1, 0, 0, -0.6, 0.6);
+        else if (hips[i] == 'i')
+          joint(side + "hip_yaw", parent, child, 0, at, 0, 0, y * std::sqrt(0.5), std::sqrt(0.5),
+                -1, 1);
+        else if (hips[i] == 't')
+          joint(side + "thigh_turn", parent, child, 0, at, 0, 0, 0, 1, -1, 1);
         else
           joint(side + "hip_pitch", parent, child, 0, at, 0, 0, 1, 0, -1.8, 1.2);
         parent = child;
       }
       link(side + "shank", 0.4, 0.006, 0, -shank / 2, 0.04, 0.04, 0.8 * shank, true);
-      joint(side + "knee", parent, side + "shank", 0, 0, -thigh, 0, 1, 0, -0.02, 2.3);
+      if (tandem_knee) {
+        link(side + "kneecap", 0.1, 0, 0, 0, 0.03, 0.03, 0.03, false);
+        joint(side + "knee", parent, side + "kneecap", 0, 0, -thigh, 0, 1, 0, -0.01, 1.15);
+        joint(side + "lower_knee", side + "kneecap", side + "shank", 0, 0, -0.02, 0, 1, 0, -0.01,
+              1.15, "<mimic joint=\"" + side + "knee\"/>");
+      } else {
+        joint(side + "knee", parent, side + "shank", 0, 0, -thigh, 0, 1, 0, -0.02, 2.3);
+      }
       std::string below = side + "shank";
       double down = -shank;
       if (ankle_roll) {
@@ -143,11 +160,33 @@ struct UrdfBiped {
         joint(side + "ankle_roll", below, side + "foot", 0, 0, down, 1, 0, 0, -0.5, 0.5);
       else
         joint(side + "ankle_pitch", below, side + "foot", 0, 0, down, 0, 1, 0, -1.2, 1.2);
+      if (toes) {
+        link(side + "toe", 0.05, 0.02, 0, 0.005, 0.04, foot_width, 0.01, true);
+        joint(side + "toe_pitch", side + "foot", side + "toe", ahead + foot_length / 2, 0, -ankle,
+              0, 1, 0, -0.7, 0.7);
+      }
       link(side + "arm", 0.35, 0, 0.01 * y, -0.09, 0.04, 0.04, 0.18, true);
       joint(side + "shoulder", "trunk", side + "arm", 0, 0.11 * y, 0.2, 0, 1, 0, -2.5, 2.5);
     }
     return urdf + "</robot>\n";
   }
 };
+
+/// The robot with bent knees and with soles whose frames lie under the ankles.
+inline RobotModel standing_model(const UrdfBiped& kind) {
+  RobotDescription robot = parse_urdf(kind.text(), "robot.urdf");
+  for (const bool is_left : {true, false}) {
+    const std::string& side = is_left ? kind.left : kind.right;
+    SoleDescription& sole = robot.soles[is_left ? "left" : "right"];
+    sole.link = side + "foot";
+    sole.frame.translation().z() = -kind.size * kind.ankle;
+    const double half = kind.size * kind.foot_width / 2, ahead = kind.size * kind.foot_length / 2;
+    sole.polygon = {{-ahead, -half}, {ahead, -half}, {ahead, half}, {-ahead, half}};
+    robot.postures["home"][side + "hip_pitch"] = -0.4;
+    robot.postures["home"][side + "knee"] = kind.tandem_knee ? 0.4 : 0.8;
+    robot.postures["home"][side + "ankle_pitch"] = -0.4;
+  }
+  return RobotModel(robot);
+}
 
 }  // namespace ayumi::test

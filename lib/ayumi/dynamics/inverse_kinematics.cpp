@@ -69,6 +69,10 @@ constexpr double kLastStep = 1e-10;
 // degrees.
 constexpr double kAcross = 0.7;
 
+// Smallest cosine of the angle between the axes of hip, knee and ankle. Chosen: 15 degrees; a hip
+// whose yaw axis is inclined, as NAO's is by 45 degrees, is not among them.
+constexpr double kParallel = 0.966;
+
 // Range that a knee needs on its human side [rad]. Chosen: half of kStartBend; a knee with a
 // smaller range stays nearly straight, and its robot is built to bend the other way.
 constexpr double kStartBend = 0.3, kKneeRoom = 0.15;
@@ -77,6 +81,15 @@ constexpr double kStartBend = 0.3, kKneeRoom = 0.15;
 // the foot that is lifted. With half of the value, Open Duck Mini stands with its hips at their
 // limits and cannot lift a foot; with twice, only limits that are placeholders leave so much room.
 constexpr double kCrouchBend = 1.2;
+
+// Joints of the leg that are solved; with this number, every pose of the sole has one solution
+// nearby. Definition: a pose has six coordinates.
+constexpr size_t kPoseJoints = 6;
+
+// Share of the largest determinant that six joints of a longer leg need. Chosen: any six joints
+// with this share move the sole freely; a hip and a thigh that turn about the same axis have equal
+// shares.
+constexpr double kFreeShare = 0.5;
 
 // Sine of the knee's angle up to which a leg counts as straight. Chosen: 1 degree.
 constexpr double kStraightSine = 0.02;
@@ -102,6 +115,20 @@ std::vector<int> coupled_joints(const RobotModel& model) {
       coupled.push_back(dof);
   }
   return coupled;
+}
+
+// The largest group of these joints whose axes are parallel, if it has three joints; else all.
+std::vector<int> parallel_joints(const RobotModel& model, const RobotData& data,
+                                 const std::vector<int>& joints) {
+  std::vector<int> largest;
+  const auto axis = [&](int dof) { return Vector3d(data.axis[model.dofs()[dof].body]); };
+  for (const int first : joints) {
+    std::vector<int> group;
+    for (const int dof : joints)
+      if (std::abs(axis(dof).dot(axis(first))) > kParallel) group.push_back(dof);
+    if (group.size() > largest.size()) largest = group;
+  }
+  return largest.size() < 3 ? joints : largest;
 }
 
 // Gauss' elimination with row pivots on [A, B], in place, for a square A: B becomes A^-1 B. Returns
@@ -131,6 +158,31 @@ double eliminate(Rows& rows) {
   return determinant;
 }
 
+// A leg of more than six joints reaches a pose in infinitely many ways, and a solution that starts
+// from the sample before it wanders among them. So six joints are solved, and the others keep the
+// angles of postures and keys. Of all choices of six joints that move the sole freely, the one with
+// the joints nearest to the trunk is taken. `J` is the Jacobian of the whole leg.
+std::vector<int> six_joints(const std::vector<int>& leg, const MatrixXd& J) {
+  std::vector<bool> chosen(leg.size(), false);
+  std::fill_n(chosen.begin(), kPoseJoints, true);
+  std::vector<std::pair<double, std::vector<int>>> choices;  // in the order of the joints
+  do {
+    Eigen::Matrix<double, 6, 6, Eigen::RowMajor> rows;
+    std::vector<int> joints;
+    for (size_t i = 0; i < leg.size(); ++i) {
+      if (!chosen[i]) continue;
+      rows.col(static_cast<Eigen::Index>(joints.size())) = J.col(static_cast<Eigen::Index>(i));
+      joints.push_back(leg[i]);
+    }
+    choices.emplace_back(std::abs(eliminate(rows)), joints);
+  } while (std::prev_permutation(chosen.begin(), chosen.end()));
+  double most = 0;
+  for (const auto& [determinant, joints] : choices) most = std::max(most, determinant);
+  return std::find_if(choices.begin(), choices.end(),
+                      [&](const auto& each) { return each.first >= kFreeShare * most; })
+      ->second;
+}
+
 }  // namespace
 
 InverseKinematics::InverseKinematics(const RobotModel& model, const VectorXd& reference)
@@ -143,8 +195,21 @@ InverseKinematics::InverseKinematics(const RobotModel& model, const VectorXd& re
       fail(ErrorCode::bad_model,
            model.name() + ": no joint moves the " + name_of(side) +
                " sole relative to the other one, so the legs cannot be solved");
-    for (const int dof : leg) solved_[dof] = true;
   }
+  RobotData data(model);
+  if (std::max(legs_[0].size(), legs_[1].size()) > kPoseJoints) {
+    find_knees(data);
+    RobotState home = model.rest_state();
+    for (int s = 0; s < 2; ++s)  // straight legs cannot move the sole freely
+      if (knees_[s] >= 0 && home.theta[knees_[s]] == 0)
+        home.theta[knees_[s]] = forward_[s] * kStartBend;
+    update_positions(model, home, data);
+    for (const Side side : kSides)
+      if (auto& leg = legs_[static_cast<int>(side)]; leg.size() > kPoseJoints)
+        leg = six_joints(leg, leg_jacobian(data, side, leg));
+  }
+  for (const auto& leg : legs_)
+    for (const int dof : leg) solved_[dof] = true;
   square_ = legs_[0].size() == 6 && legs_[1].size() == 6;
   lacking_ = std::min(legs_[0].size(), legs_[1].size()) < 6;
   if (lacking_) {
@@ -153,7 +218,6 @@ InverseKinematics::InverseKinematics(const RobotModel& model, const VectorXd& re
   }
   if (square_)
     for (const Side side : kSides) find_leg_bodies(side);
-  RobotData data(model);
   find_knees(data);
   bend_straight_legs(data);
   bend_ = bend(data);
@@ -189,7 +253,8 @@ void InverseKinematics::find_leg_bodies(Side side) {
       std::max(largest_bend_rate_, 37 * elementary::power<3>(ratio * ratio * (1 + reach * reach)));
 }
 
-// The knee is the middle one of the first three joints of a leg whose axes lie across the trunk.
+// The knee is the middle one of the first three joints of a leg whose axes are parallel and lie
+// across the trunk.
 void InverseKinematics::find_knees(RobotData& data) {
   RobotState state = model_->rest_state();
   state.theta = start_;
@@ -197,11 +262,13 @@ void InverseKinematics::find_knees(RobotData& data) {
   const Vector3d across = data.rotation[model_->trunk_body()].col(1);
   for (int s = 0; s < 2; ++s) {
     std::vector<int> found;
+    knees_[s] = -1;
     for (const int dof : legs_[s]) {
       const int body = model_->dofs()[dof].body;
       if (!model_->dofs()[dof].prismatic && std::abs(data.axis[body].dot(across)) > kAcross)
         found.push_back(dof);
     }
+    found = parallel_joints(*model_, data, found);
     if (found.size() < 3) continue;
     knees_[s] = found[1];
     knee_hips_[s] = model_->dofs()[found[0]].body;
@@ -242,12 +309,12 @@ void InverseKinematics::bend_straight_legs(RobotData& data) {
                                   : std::abs(knee_bend(data, side)) < kStraightSine;
     if (!straight) continue;
     double way = knees_[s] >= 0 ? forward_[s] : 1.0;
+    const Vector3d across = data.rotation[model_->trunk_body()].col(1);
     const auto room_of = [&](int joint, double w) {
       const Dof& moved = model_->dofs()[joint];
       return w > 0 ? moved.upper - start_[joint] : start_[joint] - moved.lower;
     };
     // The hip and the ankle each turn back by half the bend of the knee.
-    const Vector3d across = data.rotation[model_->trunk_body()].col(1);
     const auto room = [&](double w) {
       double least = room_of(knee, w);
       if (knees_[s] < 0) return least;
@@ -262,6 +329,15 @@ void InverseKinematics::bend_straight_legs(RobotData& data) {
                                        : room(way) < kCrouchBend && room(-way) >= kCrouchBend)
       way = -way;
     start_[knee] += way * kStartBend;
+    if (knees_[s] < 0) continue;
+    // The sole stays level, so that Newton starts near a solution with this bend.
+    const double turn = forward_[s] * way * kStartBend / 2;
+    for (const int body : {knee_hips_[s], knee_feet_[s]}) {
+      const double own = model_->bodies()[body].ratio * data.axis[body].dot(across);
+      const Dof& moved = model_->dofs()[model_->bodies()[body].dof];
+      double& angle = start_[model_->bodies()[body].dof];
+      angle = std::clamp(angle - (own > 0 ? turn : -turn), moved.lower, moved.upper);
+    }
   }
   state.theta = start_;
   update_positions(*model_, state, data);

@@ -62,7 +62,7 @@ class InverseKinematics {
   /// foot as root.
   InverseKinematics(const RobotModel& model, const Eigen::VectorXd& reference);
 
-  /// The joints that are solved are those of one leg only. A waist above both legs is not solved.
+  /// The solved joints of a leg, at most six. A waist above both legs is not solved.
   const std::vector<int>& leg(Side side) const { return legs_[static_cast<int>(side)]; }
   /// Whether a leg has fewer than six joints of its own. Then the trunk leans as far as the soles
   /// and the COG require, and joints that are coupled across both legs are solved too.
@@ -83,8 +83,8 @@ class InverseKinematics {
 
   /// Newton's method on base position and leg joints, which starts from `state`. Other joints are
   /// read from `state`, and the base attitude follows from `target.trunk`. Legs of six joints meet
-  /// the target to 1e-13. Others are solved as damped least squares inside the position limits:
-  /// legs with more joints meet the target, legs with fewer joints come within lacking_tolerance().
+  /// the target to 1e-13; of longer legs, the joints that leg() does not list are read from
+  /// `state`. Shorter ones are solved by damped least squares and come within lacking_tolerance().
   /// `state` is only meaningful if the solution says that the target is reached; `data` is a
   /// workspace.
   PostureSolution solve(const PostureTarget& target, RobotState& state, RobotData& data) const;

@@ -5,6 +5,7 @@
 
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/linear_solve.hpp"
+#include "ayumi/model/foot_bodies.hpp"
 #include "ayumi/model/outline.hpp"
 
 namespace ayumi {
@@ -87,11 +88,8 @@ std::vector<std::pair<int, Vector3d>> free_ends(const RobotModel& model) {
   RobotData data(model);
   update_positions(model, model.rest_state(), data);
   std::vector<std::pair<int, Vector3d>> ends;
-  for (const int body : limb_ends(model)) {
-    const bool foot = model.has_soles() &&
-                      (body == model.sole(Side::left).body || body == model.sole(Side::right).body);
-    if (!foot) ends.emplace_back(body, data.position[static_cast<size_t>(body)]);
-  }
+  for (const int body : limb_ends(model))
+    if (!is_of_foot(model, body)) ends.emplace_back(body, data.position[static_cast<size_t>(body)]);
   return ends;
 }
 

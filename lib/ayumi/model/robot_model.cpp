@@ -266,10 +266,12 @@ std::map<std::string, double> neutral_posture(const std::vector<Dof>& dofs) {
 }
 
 std::vector<int> dofs_to_root(const std::vector<Body>& bodies, int body) {
-  std::vector<int> dofs;
+  std::vector<int> dofs, once;
   for (; bodies[body].parent >= 0; body = bodies[body].parent) dofs.push_back(bodies[body].dof);
   std::reverse(dofs.begin(), dofs.end());
-  return dofs;
+  for (const int dof : dofs)  // a mimic joint has the dof of the joint that it follows
+    if (std::find(once.begin(), once.end(), dof) == once.end()) once.push_back(dof);
+  return once;
 }
 
 }  // namespace
@@ -341,7 +343,12 @@ int RobotModel::find_link(const std::string& link_name) const {
 const Sole& RobotModel::sole(Side side) const {
   if (!has_soles())
     complain_sidecar(description_, "/soles",
-                     "the robot has no soles; give /soles/left and /soles/right");
+                     "the robot has no soles; give /soles/left and /soles/right" +
+                         std::string(description_.missing_meshes.empty()
+                                         ? ""
+                                         : ", or find the missing meshes, which `ayumi inspect` "
+                                           "lists: they may show the feet (--package-path names "
+                                           "the folder with the packages)"));
   return soles_[static_cast<int>(side)];
 }
 

@@ -520,6 +520,7 @@ std::vector<std::string> to_do_list(const RobotModel& model, const RobotGuess& g
         "Compare the outline of the soles with the real feet: " + sole_in_words(model, Side::left) +
         ", " + sole_in_words(model, Side::right) + ".");
     if (!guess.rounded_soles.empty()) items.push_back(guess.rounded_soles);
+    if (!guess.more_feet.empty()) items.push_back(guess.more_feet);
     const InverseKinematics ik(model, model.posture());
     items.push_back(
         "Compare this order of the leg joints, from the trunk down, with the real robot. Left: " +
@@ -529,6 +530,17 @@ std::vector<std::string> to_do_list(const RobotModel& model, const RobotGuess& g
           "Expect limits of the legs: each leg has fewer than six joints of its own, so at some "
           "places it cannot put the sole flat on the ground. The robot can stand, squat and take "
           "small steps, and its trunk leans.");
+    std::vector<std::string> held;
+    for (const Side side : {Side::left, Side::right})
+      for (const int dof : model.leg(side))
+        if (!ik.solves(dof) && model.leg(side).size() > ik.leg(side).size() &&
+            std::find(model.leg(other(side)).begin(), model.leg(other(side)).end(), dof) ==
+                model.leg(other(side)).end())
+          held.push_back(model.dofs()[dof].name);
+    if (!held.empty())
+      items.push_back("Expect that " + text::join(held, ", ") +
+                      " move only where postures and keys move them: six joints put a sole in its "
+                      "place, and the legs have more.");
     items.push_back("Measure how soft the soles are (stiffness).");
   }
   items.push_back(

@@ -94,8 +94,9 @@ constexpr double kLegEffort = 0.4, kOtherEffort = 0.1;
 constexpr double kGreatestEffort = 5;
 // Speed above which a limit is a placeholder [rad/s]. Chosen: ten times that of a usual servo.
 constexpr double kGreatestSpeed = 60;
-// If at least this share of the joints have the same position limits, these limits are
-// placeholders. Chosen.
+// If at least this share of the joints, or of the joints of the legs, have the same position
+// limits, these limits are placeholders. Chosen: knees bend to one side, unlike the other joints of
+// a leg.
 constexpr double kSameLimits = 0.8;
 // Smallest number of joints for a rule about all joints. Chosen.
 constexpr size_t kManyJoints = 6;
@@ -235,6 +236,25 @@ std::vector<Foot> find_feet(const RobotModel& model, const std::vector<Isometry3
       return {a, b};
     }
   return {};
+}
+
+// End bodies that stand on the ground beside the feet, such as the other feet of a robot with four
+// legs. Toes, which a foot carries, are not among them.
+std::vector<std::string> other_links_on_the_ground(const RobotModel& model,
+                                                   const std::vector<Isometry3d>& poses,
+                                                   const std::vector<Foot>& feet) {
+  std::vector<std::string> found;
+  std::vector<bool> leaf(model.bodies().size(), true);
+  for (const Body& body : model.bodies())
+    if (body.parent >= 0) leaf[body.parent] = false;
+  const double ground = std::max(feet[0].lowest, feet[1].lowest) + kTouching;
+  for (int body = 1; body < static_cast<int>(leaf.size()); ++body) {
+    if (!leaf[body] || is_above(model, feet[0].body, body) || is_above(model, feet[1].body, body))
+      continue;
+    if (lowest_of(body_points(model, poses, body)) <= ground)
+      found.push_back(model.bodies()[body].name);
+  }
+  return found;
 }
 
 // ---- facing
@@ -491,6 +511,19 @@ void find_soles(RobotGuess& guess) {
           " mm above the ground the foot measures " + size_text(higher) +
           ". If the soles are soft, find out how much of them carries the robot, and state its "
           "outline: a narrow sole can make walks impossible.";
+  }
+  const std::vector<std::string> more = other_links_on_the_ground(model, poses, feet);
+  if (!more.empty()) {
+    guess.more_feet =
+        "Ayumi moves robots that walk on two feet, but other links of this robot stand on the "
+        "ground as well: " +
+        text::join(more, ", ") +
+        ". If the soles belong to other links, state them under \"soles\".";
+    robot.assumptions.push_back("the feet are " + soles["left"].link + " and " +
+                                soles["right"].link +
+                                ", although other links stand on the ground "
+                                "as well: " +
+                                text::join(more, ", "));
   }
   for (const auto& [side, sole] : soles)
     robot.assumptions.push_back(
@@ -987,8 +1020,20 @@ std::vector<PlaceholderLimits> placeholder_limits(const RobotModel& model) {
   }
   const auto count = static_cast<double>(model.dof_count());
   const bool many = static_cast<size_t>(model.dof_count()) >= kManyJoints;
+  std::set<std::string> legs;
+  for (int i = 0; i < model.dof_count(); ++i)
+    if (is_of_leg(model, i)) legs.insert(model.dofs()[i].name);
+  const auto share_of_legs = [&](const std::vector<std::string>& joints) {
+    const auto among = std::count_if(joints.begin(), joints.end(), [&](const std::string& joint) {
+      return legs.contains(joint);
+    });
+    return legs.size() < kManyJoints
+               ? 0.0
+               : static_cast<double>(among) / static_cast<double>(legs.size());
+  };
   for (const auto& [range, joints] : ranges)
-    if (many && static_cast<double>(joints.size()) >= kSameLimits * count)
+    if (many && (static_cast<double>(joints.size()) >= kSameLimits * count ||
+                 share_of_legs(joints) >= kSameLimits))
       found.push_back({"position limits",
                        text::fixed(range.first / kOneDegree, 0) + " to " +
                            text::fixed(range.second / kOneDegree, 0) + " deg",
@@ -998,7 +1043,8 @@ std::vector<PlaceholderLimits> placeholder_limits(const RobotModel& model) {
       found.push_back({"speed limits", text::brief(speed) + " rad/s", joints});
   for (const auto& [effort, joints] : efforts)
     if (effort > kGreatestEffort * moment ||
-        (many && effort > 0 && joints.size() == static_cast<size_t>(count) && effort > moment))
+        (many && effort > moment &&
+         (joints.size() == static_cast<size_t>(count) || share_of_legs(joints) == 1)))
       found.push_back({"effort limits", text::brief(effort) + " N m", joints});
   return found;
 }

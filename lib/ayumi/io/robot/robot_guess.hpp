@@ -29,6 +29,8 @@ struct RobotGuess {
   std::string facing = "x";  ///< direction in the URDF's root link; `robot` itself faces x
   GuessReason facing_reason, sole_reason, home_reason, servo_reason;
   std::string rounded_soles;  ///< what to do about rounded soles; empty if the soles are flat
+  /// What to do about other links that stand on the ground; empty if there are none.
+  std::string more_feet;
   std::vector<PlaceholderLimits> placeholders;
 };
 
@@ -61,9 +63,9 @@ std::vector<std::string> passive_joints(const RobotDescription& robot);
 /// which at most `most` are named. There is one sentence for each.
 std::vector<std::string> gaps_of_the_files(const RobotDescription& robot, size_t most);
 
-/// Limits that are placeholders: equal position limits on most joints, speeds above 60 rad/s,
-/// efforts that are equal on all joints, and efforts above five times m g z (with the mass m and
-/// the COG height z).
+/// Limits that are placeholders: equal position limits on most joints or on most joints of the
+/// legs, speeds above 60 rad/s, efforts above m g z that are equal on all joints or on all joints
+/// of the legs, and efforts above five times m g z (with the mass m and the COG height z).
 std::vector<PlaceholderLimits> placeholder_limits(const RobotModel& model);
 
 /// The motion of a joint by a positive angle in the home posture, such as "positive bends the

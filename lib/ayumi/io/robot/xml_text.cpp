@@ -80,7 +80,8 @@ void parse_xml(TiXmlDocument& document, const std::string& bytes, const std::str
          std::string("not XML (") + document.ErrorDesc() + "); " + kind + " is needed");
   if (document.Error())
     fail(ErrorCode::bad_file, {file, "", document.ErrorRow()},
-         std::string("not XML (") + document.ErrorDesc() + ")");
+         std::string("not XML (") + document.ErrorDesc() +
+             "); correct this place, or copy the file again if it was cut off");
   if (!document.RootElement())
     fail(ErrorCode::bad_file, {file}, "not XML (no element in it); " + kind + " is needed");
 }

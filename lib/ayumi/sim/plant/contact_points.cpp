@@ -9,6 +9,7 @@
 #include "ayumi/geometry/mesh_hull.hpp"
 #include "ayumi/math/elementary.hpp"
 #include "ayumi/math/polygon.hpp"
+#include "ayumi/model/foot_bodies.hpp"
 #include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
@@ -105,10 +106,8 @@ std::vector<ContactPoint> contact_points(const RobotModel& model) {
   std::optional<ShieldedByFoot> shielded;
   if (model.has_soles()) shielded.emplace(model);
   for (const Link& link : model.links()) {
-    const bool foot = model.has_soles() && (link.body == model.sole(Side::left).body ||
-                                            link.body == model.sole(Side::right).body);
+    if (is_of_foot(model, link.body)) continue;
     for (const PlacedShape& shape : link.collisions) {
-      if (foot) continue;
       for (ContactPoint point : touch_points(shape)) {
         point.body = link.body;
         point.position = link.pose * point.position;

@@ -11,6 +11,7 @@
 
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/rotation.hpp"
+#include "ayumi/model/foot_bodies.hpp"
 
 namespace ayumi {
 
@@ -78,9 +79,8 @@ ContactSet::ContactSet(const RobotModel& model, const World& world)
       link_stiffness_(body_stiffness(model)) {
   for (const PointGroup& group : groups_)
     widest_ = std::max(widest_, group.center.norm() + group.radius);
-  is_foot_.assign(model.bodies().size(), 0);
-  for (const Side side : {Side::left, Side::right})
-    if (model.has_soles()) is_foot_[static_cast<size_t>(model.sole(side).body)] = 1;
+  for (size_t i = 0; i < model.bodies().size(); ++i)
+    is_foot_.push_back(is_of_foot(model, static_cast<int>(i)));
   active_.reserve(points_.size() + 64);
   previous_.reserve(points_.size() + 64);
   outline_.reserve(16);
