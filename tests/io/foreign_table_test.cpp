@@ -161,6 +161,23 @@ TEST(ForeignTable, RoughAnglesAreSaid) {
   EXPECT_EQ(rough(1e3, smooth), "");
 }
 
+// Noise of a millimetre at 30 rows per second moves the ZMP by several centimetres.
+TEST(ForeignTable, ARoughTrackOfTheRootIsSaid) {
+  const auto rough = [](double noise) {
+    std::string text = "t,root_x,root_y,root_z,root_qw,root_qx,root_qy,root_qz,l_knee\n";
+    for (int k = 0; k < 90; ++k)
+      text += std::to_string(k / 30.) + "," +
+              std::to_string(0.05 * std::sin(k / 15.) + noise * (k * k % 7 - 2)) +
+              ",0,0.3,1,0,0,0,0.3\n";
+    for (const std::string& line : read(text).filled)
+      if (line.find("the track of the root is rough") != std::string::npos) return true;
+    return false;
+  };
+  EXPECT_FALSE(rough(0));
+  EXPECT_FALSE(rough(1e-4));
+  EXPECT_TRUE(rough(1e-3));
+}
+
 // Six columns of place and quaternion w x y z with these names, then a joint. The root turns by 90
 // degrees about z and moves along x.
 std::string rooted(const std::string& names) {

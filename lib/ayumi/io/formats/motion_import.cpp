@@ -606,29 +606,34 @@ Eigen::VectorXd smoothed_from_rest(const Eigen::VectorXd& raw, double band, doub
   return smoothed_within(mirrored, band, cutoff).segment(more, n);
 }
 
-// Angles that were rounded or measured with noise have accelerations from row to row that no motion
+// Values that were rounded or measured with noise have accelerations from row to row that no motion
 // has. The difference of a row's acceleration from those of its neighbours is then larger than the
-// accelerations themselves. In smooth motions it is smaller.
-void say_rough(const RobotModel& model, ImportedMotion& imported) {
+// accelerations themselves. In smooth motions it is smaller. Returns the root mean square of these
+// accelerations, or 0 for a smooth motion.
+double noise_of(const Eigen::VectorXd& values, double dt) {
   // Ratio of third to second differences above which a motion is noisy. Derived: between white
   // noise, which has a ratio of sqrt(20/6) = 1.8, and a motion of 2 Hz at 30 rows per second, which
   // has 0.4.
   constexpr double kNoise = 1.2;
+  const Eigen::Index rows = values.size();
+  const Eigen::VectorXd rate = values.tail(rows - 1) - values.head(rows - 1);
+  const Eigen::VectorXd second = rate.tail(rows - 2) - rate.head(rows - 2);
+  const Eigen::VectorXd third = second.tail(rows - 3) - second.head(rows - 3);
+  if (third.norm() < kNoise * second.norm()) return 0;
+  return second.norm() / std::sqrt(static_cast<double>(rows - 2)) / (dt * dt);
+}
+
+void say_rough_angles(const RobotModel& model, ImportedMotion& imported) {
   // Acceleration of the noise above which a note is written [rad/s^2, m/s^2]. Chosen: the
   // acceleration of joints in quick motions.
   constexpr double kSaid = 20;
   const Eigen::MatrixXd& theta = imported.motion.theta;
-  const Eigen::Index rows = theta.rows();
-  const double dt = imported.motion.dt;
   double worst = 0;
   Eigen::Index joint = 0;
   for (Eigen::Index j = 0; j < theta.cols(); ++j) {
-    const Eigen::VectorXd rate = theta.col(j).tail(rows - 1) - theta.col(j).head(rows - 1);
-    const Eigen::VectorXd second = rate.tail(rows - 2) - rate.head(rows - 2);
-    const Eigen::VectorXd third = second.tail(rows - 3) - second.head(rows - 3);
-    const double acceleration = second.norm() / std::sqrt(static_cast<double>(rows - 2));
-    if (third.norm() < kNoise * second.norm() || acceleration / (dt * dt) < worst) continue;
-    worst = acceleration / (dt * dt);
+    const double noise = noise_of(theta.col(j), imported.motion.dt);
+    if (noise < worst) continue;
+    worst = noise;
     joint = j;
   }
   if (worst < kSaid) return;
@@ -639,6 +644,29 @@ void say_rough(const RobotModel& model, ImportedMotion& imported) {
       (model.dofs()[static_cast<size_t>(joint)].prismatic ? " m/s2" : " rad/s2") +
       " (root mean square), and the forces are computed from the accelerations. --smooth DEG "
       "smooths the angles and changes each by at most DEG degrees (try 0.1)");
+}
+
+// Noise of the root moves the whole robot, so it moves the ZMP at once.
+void say_rough_root(ImportedMotion& imported) {
+  // Acceleration of the noise above which a note is written [m/s^2]. Derived: a tenth of gravity
+  // moves the ZMP by a tenth of the COG height, which is half of a sole.
+  constexpr double kSaid = 0.1 * kGravity;
+  const std::vector<BasePose>& base = imported.motion.base;
+  if (base.empty()) return;
+  double worst = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    Eigen::VectorXd place(static_cast<Eigen::Index>(base.size()));
+    for (size_t k = 0; k < base.size(); ++k)
+      place[static_cast<Eigen::Index>(k)] = base[k].position[axis];
+    worst = std::max(worst, noise_of(place, imported.motion.dt));
+  }
+  if (worst < kSaid) return;
+  imported.filled.push_back(
+      "the track of the root is rough, as if it was rounded or measured with noise: it has an "
+      "acceleration of " +
+      text::brief(worst, 2) +
+      " m/s2 (root mean square), which moves the ZMP. --smooth does not smooth the root; smooth "
+      "its track in the program that recorded it");
 }
 
 // Counts are rounded, and they are interpolated linearly between the times for which they were
@@ -652,8 +680,9 @@ void smooth_angles(const RobotModel& model, const ImportOptions& options,
   // walk (0.55 s each).
   constexpr double kCutoff = 20;
   const double degrees = options.smooth.value_or(imported.format == "hoap" ? kOfCounts : 0);
+  say_rough_root(imported);
   if (degrees <= 0) {
-    say_rough(model, imported);
+    say_rough_angles(model, imported);
     return;
   }
   Eigen::MatrixXd& theta = imported.motion.theta;
