@@ -96,6 +96,10 @@ TEST(BrokenRobot, WhatIsNoFile) {
 
 TEST(BrokenRobot, WhatIsNoUrdf) {
   EXPECT_EQ(urdf_error(" \n"), "r.urdf: the file is empty, but a URDF is needed");
+  // A file that was cut off: the message has the line of its end and a remedy.
+  const std::string cut = urdf_error("<robot name=\"r\">\n<link name=\"a\">\n<mass>1.");
+  EXPECT_TRUE(cut.starts_with("r.urdf:3: not XML")) << cut;
+  EXPECT_NE(cut.find("copy the file again if it was cut off"), std::string::npos) << cut;
   EXPECT_TRUE(urdf_error("hello").starts_with("r.urdf: not XML"));
   EXPECT_TRUE(urdf_error("<robot name=\"r\">\n<link name=\"a\">\n</robot>").starts_with("r.urdf"));
   EXPECT_EQ(

@@ -217,6 +217,20 @@ TEST(FirstSidecar, PlaceholdersAreNamed) {
   EXPECT_TRUE(guess({}, folder).placeholders.empty());
 }
 
+// All joints of a leg are listed, also those that only keys move.
+TEST(FirstSidecar, NamesTheJointsOfLongLegs) {
+  const TemporaryFolder folder;
+  const std::string urdf = folder.write("seven.urdf", UrdfBiped{.hips = "yrpt"}.text()).string();
+  const std::vector<std::string> to_do = first_sidecar(urdf, folder.path() / "seven").to_do;
+  const auto says = [&](const std::string& words) {
+    return std::any_of(to_do.begin(), to_do.end(), [&](const std::string& item) {
+      return item.find(words) != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(says("hip pitch l_hip_pitch, hip yaw l_thigh_turn, knee l_knee"));
+  EXPECT_TRUE(says("Expect that l_thigh_turn, r_thigh_turn move only where postures and keys"));
+}
+
 // The limits of the arms may be true although those of the legs are placeholders.
 TEST(FirstSidecar, PlaceholdersOfTheLegsAloneAreNamed) {
   const TemporaryFolder folder;

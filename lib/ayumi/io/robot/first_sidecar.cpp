@@ -134,7 +134,16 @@ std::string trunk_text(const RobotModel& model) {
          "  \"trunk_link\": " + json_text(name) + ",\n";
 }
 
-// A leg in words, such as "hip: yaw J0, roll J1; knee J3; ankle: pitch J4".
+// The joints that move this leg alone, also those that inverse kinematics does not solve.
+std::vector<int> joints_of_leg(const RobotModel& model, Side side) {
+  const std::vector<int>& others = model.leg(other(side));
+  std::vector<int> joints;
+  for (const int dof : model.leg(side))
+    if (std::find(others.begin(), others.end(), dof) == others.end()) joints.push_back(dof);
+  return joints;
+}
+
+// A leg in words, such as "hip yaw J0, hip roll J1, knee J3, ankle pitch J4".
 std::string leg_in_words(const RobotModel& model, Side side) {
   const InverseKinematics ik(model, model.posture());
   RobotData data(model);
@@ -142,7 +151,7 @@ std::string leg_in_words(const RobotModel& model, Side side) {
   const Eigen::Matrix3d trunk = data.rotation[body_above_both_legs(model)];
   std::vector<std::string> words;
   std::string part = "hip ";
-  for (const int dof : ik.leg(side)) {
+  for (const int dof : joints_of_leg(model, side)) {
     const std::string& name = model.dofs()[dof].name;
     if (dof == ik.knee(side)) {
       words.push_back("knee " + name);
@@ -152,8 +161,12 @@ std::string leg_in_words(const RobotModel& model, Side side) {
     int major = 0;
     (trunk.transpose() * data.axis[model.dofs()[dof].body]).cwiseAbs().maxCoeff(&major);
     const char* turns[] = {"roll ", "pitch ", "yaw "};
-    words.push_back((model.dofs()[dof].prismatic ? std::string("slide ") : part + turns[major]) +
-                    name);
+    if (model.dofs()[dof].prismatic) {  // a telescopic leg has no knee
+      words.push_back("slide " + name);
+      part = "ankle ";
+    } else {
+      words.push_back(part + turns[major] + name);
+    }
   }
   return text::join(words, ", ");
 }
@@ -238,6 +251,10 @@ std::map<std::string, std::string> leg_aliases(const RobotModel& model) {
       if (dof == ik.knee(side)) {
         below = true;
         roles[prefix + "knee"].push_back(name);
+        continue;
+      }
+      if (model.dofs()[dof].prismatic) {
+        below = true;
         continue;
       }
       int major = 0;
@@ -532,11 +549,8 @@ std::vector<std::string> to_do_list(const RobotModel& model, const RobotGuess& g
           "small steps, and its trunk leans.");
     std::vector<std::string> held;
     for (const Side side : {Side::left, Side::right})
-      for (const int dof : model.leg(side))
-        if (!ik.solves(dof) && model.leg(side).size() > ik.leg(side).size() &&
-            std::find(model.leg(other(side)).begin(), model.leg(other(side)).end(), dof) ==
-                model.leg(other(side)).end())
-          held.push_back(model.dofs()[dof].name);
+      for (const int dof : joints_of_leg(model, side))
+        if (!ik.solves(dof)) held.push_back(model.dofs()[dof].name);
     if (!held.empty())
       items.push_back("Expect that " + text::join(held, ", ") +
                       " move only where postures and keys move them: six joints put a sole in its "

@@ -78,10 +78,14 @@ void parse_xml(TiXmlDocument& document, const std::string& bytes, const std::str
   if (document.Error() && !document.RootElement())
     fail(ErrorCode::bad_file, {file},
          std::string("not XML (") + document.ErrorDesc() + "); " + kind + " is needed");
-  if (document.Error())
-    fail(ErrorCode::bad_file, {file, "", document.ErrorRow()},
+  if (document.Error()) {
+    // The parser does not know the row if the text ends within an element.
+    const auto rows = 1 + std::count(bytes.begin(), bytes.end(), '\n');
+    const int row = document.ErrorRow() > 0 ? document.ErrorRow() : static_cast<int>(rows);
+    fail(ErrorCode::bad_file, {file, "", row},
          std::string("not XML (") + document.ErrorDesc() +
              "); correct this place, or copy the file again if it was cut off");
+  }
   if (!document.RootElement())
     fail(ErrorCode::bad_file, {file}, "not XML (no element in it); " + kind + " is needed");
 }
