@@ -10,6 +10,8 @@
 #include "ayumi/author/edit/gait_cycle.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/io/pattern/pattern_rewrite.hpp"
 #include "ayumi/io/pattern/pattern_table.hpp"
 #include "ayumi/io/run/results_json.hpp"
 #include "ayumi/plan/sample.hpp"
@@ -63,6 +65,44 @@ ForceRange force_range(const CommandSeries& series) {
   return {least->fz, most->fz};
 }
 
+// An edited pattern, and its text if it is the text of its author with the changes.
+struct Edited {
+  Pattern pattern;
+  std::string text;               ///< empty if the pattern is written anew
+  std::vector<std::string> lost;  ///< what of the author's text is lost, such as "3 comments"
+};
+
+// Writes the edit into the text of the pattern that was read, if this is possible. `others` are
+// further patterns of which the result has values only.
+Edited in_own_text(const EditCommand& options, const Pattern& given, const Pattern& edited,
+                   double time_scale = 1, const std::vector<std::string>& others = {}) {
+  Edited result{edited, "", {}};
+  std::string before, after;
+  if (const std::string& file = given.file; fs::is_regular_file(file)) {
+    before = read_input(file, kLargestPattern);
+    RewriteOptions rewrite;
+    rewrite.out = options.out;
+    rewrite.set = read_pairs(options.input.set, "--set");
+    rewrite.time_scale = time_scale;
+    if (auto own = rewritten(before, given, edited, rewrite))
+      result = {std::move(own->pattern), std::move(own->text), {}};
+  }
+  if (result.text.empty()) {
+    for (Phase& phase : result.pattern.phases) phase.pointer.clear();
+    for (Keyframe& key : result.pattern.keyframes) key.pointer.clear();
+  }
+  after = result.text.empty() ? pattern_text(edited) : result.text;
+  const auto add_lost = [&](const std::string& file, const std::string& text,
+                            const std::string& kept) {
+    for (const std::string& mark : lost_marks(text, kept))
+      result.lost.push_back(mark + " of " + file);
+  };
+  if (!before.empty()) add_lost(given.file, before, after);
+  for (const std::string& file : others)
+    if (fs::is_regular_file(file)) add_lost(file, read_input(file, kLargestPattern), "{}");
+  return result;
+}
+
 // The edited pattern, sampled and checked, then written with its table.
 struct Result {
   CommandSeries series;
@@ -72,28 +112,33 @@ struct Result {
 };
 
 Result check_edited(const Context& context, const EditCommand& options, const Task& input,
-                    const Pattern& edited) {
+                    const Edited& edited) {
   Result result;
   result.caution = input.caution;
-  result.series = sample(input.robot, edited, {.dt = input.series.dt}, context.progress());
+  result.series = sample(input.robot, edited.pattern, {.dt = input.series.dt}, context.progress());
   result.report =
       check_consistency(input.robot, result.series, check_options(input, options.tolerances));
   result.check = check_parts(result.report, input.robot);
   return result;
 }
 
-void write_edited(Context& context, const EditCommand& options, const Pattern& edited,
+void write_edited(Context& context, const EditCommand& options, const Edited& edited,
                   const Result& result, const std::string& words, Json json) {
+  const Pattern& pattern = edited.pattern;
   refuse_overwriting(context, options.out);
-  if (edited.table) refuse_overwriting(context, table_beside(options.out));
-  write_pattern_and_table(options.out, edited, {}, result.caution);
+  if (pattern.table) refuse_overwriting(context, table_beside(options.out));
+  if (!edited.lost.empty())
+    context.print("not kept in " + options.out + ": " + text::join(edited.lost, ", ") + "\n");
+  write_pattern_and_table(options.out, pattern, {}, result.caution, {}, edited.text);
   std::vector<AnswerPart> parts = {{Worth::verdict,
                                     {options.out + ": " + painted_verdict(result.report) + ", " +
                                      text::fixed(result.series.duration(), 2) + " s\n" + words}}};
   append(parts, result.check);
   context.print(fitted(parts, room_of(rows_for(result.report)), where_more_is(result.report)));
   json["output"] = options.out;
-  json["table"] = edited.table ? Json(table_beside(options.out).string()) : Json(nullptr);
+  json["text_kept"] = !edited.text.empty();
+  json["lost"] = edited.lost;
+  json["table"] = pattern.table ? Json(table_beside(options.out).string()) : Json(nullptr);
   json["duration_s"] = result.series.duration();
   json["check"] = Json::parse(check_json(result.report));
   context.print_json(json.dump(2));
@@ -108,15 +153,16 @@ Task load(const Context& context, const EditCommand& options) {
 
 void bake(Context& context, const EditCommand& options) {
   const Task input = load(context, options);
-  const Pattern edited =
-      baked(input.robot, input.pattern, input.series, table_beside(options.out).string());
+  const Edited edited = in_own_text(
+      options, input.pattern,
+      baked(input.robot, input.pattern, input.series, table_beside(options.out).string()));
   write_edited(context, options, edited, check_edited(context, options, input, edited), "",
                Json{{"rows", input.series.samples.size()}});
 }
 
 void mirror(Context& context, const EditCommand& options) {
   const Task input = load(context, options);
-  const Pattern edited = mirrored(input.robot, input.pattern);
+  const Edited edited = in_own_text(options, input.pattern, mirrored(input.robot, input.pattern));
   write_edited(context, options, edited, check_edited(context, options, input, edited), "",
                Json::object());
 }
@@ -181,7 +227,11 @@ std::string in_words(const std::vector<BindingLimit>& limits) {
 void retime_locally(Context& context, const EditCommand& options, const Task& input) {
   LocalRetimeOptions local;
   local.path.check = check_options(input, options.tolerances);
-  if (options.margin >= 0) local.path.most_margin = options.margin;
+  // A margin that the user chooses may be too small to stand.
+  if (options.margin >= 0)
+    local.path.most_margin = options.margin;
+  else
+    local.world = input.pattern.world;
   local.keep_pauses = options.keep_pauses;
   local.dt = input.series.dt;
   LocalPace pace = fastest_local_pace(
@@ -192,6 +242,7 @@ void retime_locally(Context& context, const EditCommand& options, const Task& in
              (pace.by_posture ? ". Another timing cannot help, because a posture is wrong"
                               : ". More time alone is not enough") +
              ". Try `ayumi repair`");
+  const Edited edited = in_own_text(options, input.pattern, pace.pattern);
   Result result;
   result.caution = input.caution;
   result.series = std::move(pace.series);
@@ -203,14 +254,21 @@ void retime_locally(Context& context, const EditCommand& options, const Task& in
     limits.push_back({{"limit", limit.limit.empty() ? Json(nullptr) : Json(limit.limit)},
                       {"share", limit.share}});
   write_edited(
-      context, options, pace.pattern, result,
+      context, options, edited, result,
       "  the motion takes " + text::brief(pace.scale) + " times its original time\n" +
-          "  share of the time in which each limit decides the pace: " + in_words(pace.binding) +
-          "\n",
+          (pace.binding.empty()
+               ? "  this is the uniform pace, because the robot falls in open loop with the local "
+                 "timings that were tried\n"
+               : "  share of the time in which each limit decides the pace: " +
+                     in_words(pace.binding) + "\n") +
+          (pace.stands ? ""
+                       : "  in open loop the robot falls with this timing, but not at the uniform "
+                         "pace\n"),
       Json{{"scale", pace.scale},
            {"path_scale", pace.path_scale},
            {"rounds", pace.rounds},
            {"limited_by", limits},
+           {"stands_as_uniform", pace.stands},
            {"zmp_margin_m", {{"after", result.report.summary[FindingKind::support_margin]}}},
            {"fz_N", {{"after", {force.least, force.most}}}}});
 }
@@ -237,7 +295,8 @@ void retime(Context& context, const EditCommand& options) {
   FastestPace pace;
   if (options.to_limits) pace = limits_of(context, options, input);
   const double scale = options.to_limits ? pace.scale : options.scale;
-  const Pattern edited = retimed(input.robot, input.pattern, scale);
+  const Edited edited =
+      in_own_text(options, input.pattern, retimed(input.robot, input.pattern, scale), scale);
   const Result result = check_edited(context, options, input, edited);
   const ForceRange force = force_range(input.series);
   const FastestPace* const found = options.to_limits ? &pace : nullptr;
@@ -296,6 +355,8 @@ void join(Context& context, const EditCommand& options) {
          "played");
   refuse_overwriting(context, options.out);
   Task input = load_pattern(context, options.patterns.front(), options.input);
+  const Pattern given = input.pattern;
+  std::vector<std::string> others;
   Json joins = Json::array();
   std::string reason;
   for (size_t i = 1; i < options.patterns.size(); ++i) {
@@ -306,6 +367,7 @@ void join(Context& context, const EditCommand& options) {
                options.patterns.front() + " is '" + input.pattern.robot +
                "'; give patterns of the same robot");
     joins.push_back(input.series.duration());
+    others.push_back(next.pattern.file);
     add_caution(input.caution, next.caution);
     CommandSeries series;
     Pattern both = joined_pattern(context, options, input, {next.pattern, next.series},
@@ -313,8 +375,8 @@ void join(Context& context, const EditCommand& options) {
     input.pattern = std::move(both);
     input.series = std::move(series);
   }
-  write_edited(context, options, input.pattern,
-               check_edited(context, options, input, input.pattern),
+  const Edited edited = in_own_text(options, given, input.pattern, 1, others);
+  write_edited(context, options, edited, check_edited(context, options, input, edited),
                kept_words(input.pattern, reason),
                Json{{"joins_s", joins}, {"keys_kept", !input.pattern.table}});
 }
@@ -375,8 +437,9 @@ void loop_cycle(Context& context, const EditCommand& options) {
   const double dt = input.series.dt;
   const double begin = static_cast<double>(cycle.begin) * dt;
   const double end = static_cast<double>(cycle.end) * dt;
+  const Edited edited = in_own_text(options, input.pattern, all);
   write_edited(
-      context, options, all, check_edited(context, options, input, all),
+      context, options, edited, check_edited(context, options, input, edited),
       "  the cycle is from " + text::fixed(begin, 3) + " to " + text::fixed(end, 3) +
           " s of the walk, and the " + name_of(cycle.first) +
           " foot swings first; differences between the end and the beginning of the cycle: " +
@@ -450,8 +513,8 @@ void loop(Context& context, const EditCommand& options) {
     input.pattern = std::move(more);
     input.series = std::move(series);
   }
-  write_edited(context, options, input.pattern,
-               check_edited(context, options, input, input.pattern),
+  const Edited edited = in_own_text(options, once, input.pattern);
+  write_edited(context, options, edited, check_edited(context, options, input, edited),
                std::string("  the end of the motion is the same as its beginning") +
                    (before.closed ? "" : " after a transition") + ": " + gap_words(closed) + "\n" +
                    (options.times > 1 || !before.closed ? kept_words(input.pattern, reason) : ""),
@@ -464,7 +527,9 @@ void loop(Context& context, const EditCommand& options) {
 
 void alternate(Context& context, const EditCommand& options) {
   const Task input = load(context, options);
-  const Pattern edited = alternated(input.robot, input.pattern, options.times, !options.open_end);
+  const Edited edited =
+      in_own_text(options, input.pattern,
+                  alternated(input.robot, input.pattern, options.times, !options.open_end));
   write_edited(context, options, edited, check_edited(context, options, input, edited), "",
                Json{{"times", options.times}});
 }
@@ -482,7 +547,8 @@ void edit_key(Context& context, const EditCommand& options) {
   if (key.copy && !key.to)
     fail(ErrorCode::usage, "edit key: --copy needs the time of the copy; give --to T or --by S");
   const Task input = load(context, options);
-  const Pattern edited = with_key_edited(input.robot, input.pattern, key);
+  const Edited edited =
+      in_own_text(options, input.pattern, with_key_edited(input.robot, input.pattern, key));
   write_edited(context, options, edited, check_edited(context, options, input, edited), "",
                Json{{"at_s", key.at},
                     {"to_s", key.to ? Json(*key.to) : Json(nullptr)},
@@ -495,8 +561,9 @@ void ramp(Context& context, const EditCommand& options) {
     fail(ErrorCode::usage,
          "edit ramp: both --in and --back are 0; set at least one of them above 0 s");
   const Task input = load(context, options);
-  const Pattern edited = ramped(input.robot, {input.pattern, input.series}, options.ramps,
-                                table_beside(options.out).string());
+  const Edited edited = in_own_text(options, input.pattern,
+                                    ramped(input.robot, {input.pattern, input.series},
+                                           options.ramps, table_beside(options.out).string()));
   write_edited(context, options, edited, check_edited(context, options, input, edited), "",
                Json{{"in_s", options.ramps.in}, {"out_s", options.ramps.out}});
 }

@@ -217,6 +217,30 @@ TEST_F(Edit, MotionsJoin) {
   EXPECT_EQ(Json::parse(blended.out)["check"]["verdict"], "consistent");
 }
 
+// A kick has keys of a foot. They are kept, and moved to the places where the feet stand then.
+TEST_F(Edit, ALoopKeepsTheKeysOfAFoot) {
+  ASSERT_EQ(ayumi({"new", "kick", "--robot", "hoap1", "-o", "kick.json"}).exit_code, 0);
+  const Output out =
+      ayumi({"edit", "loop", "kick.json", "--times", "2", "-o", "kicks.json", "--json"});
+  ASSERT_EQ(out.exit_code, 0) << out.out << out.err;
+  const Json json = Json::parse(out.out);
+  EXPECT_EQ(json["keys_kept"], true) << out.out;
+  EXPECT_EQ(json["check"]["verdict"], "consistent");
+  EXPECT_EQ(json["lost"], Json::array()) << "the comments of the kick stay";
+  const std::string text = contents(folder / "kicks.json");
+  EXPECT_EQ(text.substr(0, text.find('{')),
+            contents(folder / "kick.json").substr(0, text.find('{')));
+}
+
+// What is lost is said before the file is written.
+TEST_F(Edit, SaysWhatIsLost) {
+  ASSERT_EQ(ayumi({"new", "kick", "--robot", "hoap1", "-o", "kick.json"}).exit_code, 0);
+  const Output out = ayumi({"edit", "concat", "kick.json", "kick.json", "-o", "two.json"});
+  EXPECT_EQ(out.out.find("not kept in two.json: 2 comments of kick.json"), 0u) << out.out;
+  const Output mirrored = ayumi({"edit", "mirror", "kick.json", "-o", "m.json"});
+  EXPECT_EQ(mirrored.out.find("not kept"), std::string::npos) << mirrored.out;
+}
+
 TEST_F(Edit, RampsComeFromAPosture) {
   ASSERT_EQ(ayumi({"new", "sway", "-o", "sway.json"}).exit_code, 0);
   const Output out = ayumi({"edit", "ramp", "sway.json", "--in", "0.8", "--back", "0.5",

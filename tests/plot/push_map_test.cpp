@@ -143,5 +143,34 @@ TEST(PushMap, RefusesWhatItCannotDraw) {
   EXPECT_NE(message(map).find("more than four"), std::string::npos);
 }
 
+// A motion on one foot whose other foot lands `ahead` of its place [m].
+CommandSeries on_one_foot(double ahead, bool both_in_turn = false) {
+  CommandSeries series;
+  series.samples.resize(50);
+  for (size_t k = 10; k < 20; ++k) series.samples[k].support = Support::left;
+  for (size_t k = 30; both_in_turn && k < 40; ++k) series.samples[k].support = Support::right;
+  for (size_t k = 20; k < 50; ++k) series.samples[k].feet[1].translation().x() = ahead;
+  return series;
+}
+
+std::string label_of(const CommandSeries& series) {
+  PushCase push;
+  push.bound = 1;
+  push.limits.resize(1);
+  PushOptions options;
+  options.controllers.resize(1);
+  const std::string line = push_summary_lines({push}, options, series).front();
+  return line.substr(0, line.find(':'));
+}
+
+TEST(PushMap, TheLabelFitsTheMotion) {
+  EXPECT_EQ(label_of(on_one_foot(0.03)), "walking");
+  EXPECT_EQ(label_of(on_one_foot(0)), "during the pattern") << "a kick is no walk";
+  EXPECT_EQ(label_of(on_one_foot(0, true)), "stepping in place");
+  CommandSeries still;
+  still.samples.resize(2);
+  EXPECT_EQ(label_of(still), "during the pattern");
+}
+
 }  // namespace
 }  // namespace ayumi

@@ -198,6 +198,12 @@ TEST(LogReading, ExtremesAreWorthShowing) {
       }
 }
 
+// Near its extreme a joint is slow: it has made 98 % of its move a tenth of a second before.
+TEST(LogReading, TheExtremeItselfIsShown) {
+  const SimulationLog log = nod(1.9, -1.5, 4);
+  EXPECT_TRUE(shows(telling_instants(log, 5), 1.9, 0.01));
+}
+
 // In a run with one short move, all pictures between the first and the last one are taken during
 // the move, so no two pictures show the same posture.
 TEST(LogReading, NoPostureIsShownTwice) {

@@ -287,4 +287,22 @@ TEST(LocalRetime, TheSameForAnyNumberOfThreads) {
             local_pace(hoap1(), walk, three).pattern.table->theta);
 }
 
+// A timing that brings the ZMP to the edge of the soles falls in open loop. If it has to stand
+// where the uniform pace stands, the result stands.
+TEST(LocalRetime, StandsWhereTheUniformPaceStands) {
+  const Pattern walk = walk_pattern(hoap1(), {.steps = 8});
+  LocalRetimeOptions options;
+  options.path.most_margin = 0;
+  const LocalPace quick = local_pace(hoap1(), walk, options);
+  ASSERT_TRUE(quick.found);
+  ASSERT_NE(open_loop(hoap1(), quick.series), Outcome::stands) << "otherwise this shows nothing";
+  options.world = World{};
+  const LocalPace safe = local_pace(hoap1(), walk, options);
+  ASSERT_TRUE(safe.found);
+  EXPECT_TRUE(safe.stands);
+  EXPECT_TRUE(safe.report.consistent);
+  EXPECT_EQ(open_loop(hoap1(), safe.series), Outcome::stands);
+  EXPECT_GT(safe.scale, quick.scale);
+}
+
 }  // namespace ayumi::test

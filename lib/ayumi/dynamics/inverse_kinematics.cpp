@@ -12,7 +12,6 @@
 #include "ayumi/dynamics/cog_jacobian.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/elementary.hpp"
-#include "ayumi/math/linear_solve.hpp"
 #include "ayumi/math/rotation.hpp"
 
 namespace ayumi {
@@ -22,6 +21,8 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 namespace {
+
+using RowMajorXd = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr std::array<Side, 2> kSides = {Side::left, Side::right};
 
@@ -183,6 +184,31 @@ std::vector<int> six_joints(const std::vector<int>& leg, const MatrixXd& J) {
       ->second;
 }
 
+// Solves A x = b for a symmetric A. On entry, the rows of `rows` are [A, b], of which only the part
+// on and above the diagonal of A is read; they are destroyed. If a pivot is not positive, A is
+// singular but for rounding, and that unknown is 0.
+void eliminate_symmetric(RowMajorXd& rows, VectorXd& x) {
+  const Eigen::Index n = rows.rows();
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const double* const pivot = rows.data() + k * (n + 1);
+    if (!(pivot[k] > 0)) continue;
+    const double inverse = 1 / pivot[k];
+    for (Eigen::Index i = k + 1; i < n; ++i) {
+      const double factor = pivot[i] * inverse;
+      if (factor == 0) continue;
+      double* const row = rows.data() + i * (n + 1);
+      for (Eigen::Index j = i; j <= n; ++j) row[j] -= factor * pivot[j];
+    }
+  }
+  x.resize(n);
+  for (Eigen::Index k = n - 1; k >= 0; --k) {
+    const double* const row = rows.data() + k * (n + 1);
+    double right = row[n];
+    for (Eigen::Index j = k + 1; j < n; ++j) right -= row[j] * x[j];
+    x[k] = row[k] > 0 ? right / row[k] : 0;
+  }
+}
+
 }  // namespace
 
 InverseKinematics::InverseKinematics(const RobotModel& model, const VectorXd& reference)
@@ -205,8 +231,11 @@ InverseKinematics::InverseKinematics(const RobotModel& model, const VectorXd& re
         home.theta[knees_[s]] = forward_[s] * kStartBend;
     update_positions(model, home, data);
     for (const Side side : kSides)
-      if (auto& leg = legs_[static_cast<int>(side)]; leg.size() > kPoseJoints)
-        leg = six_joints(leg, leg_jacobian(data, side, leg));
+      if (auto& leg = legs_[static_cast<int>(side)]; leg.size() > kPoseJoints) {
+        MatrixXd J = MatrixXd::Zero(6, static_cast<Eigen::Index>(leg.size()));
+        add_sole_columns(data, side, sole_chain(side, leg), J);
+        leg = six_joints(leg, J);
+      }
   }
   for (const auto& leg : legs_)
     for (const int dof : leg) solved_[dof] = true;
@@ -218,9 +247,25 @@ InverseKinematics::InverseKinematics(const RobotModel& model, const VectorXd& re
   }
   if (square_)
     for (const Side side : kSides) find_leg_bodies(side);
+  damped_joints_ = legs_[0];
+  damped_joints_.insert(damped_joints_.end(), legs_[1].begin(), legs_[1].end());
+  damped_joints_.insert(damped_joints_.end(), coupled_.begin(), coupled_.end());
+  for (const Side side : kSides)
+    sole_chains_[static_cast<int>(side)] = sole_chain(side, damped_joints_);
   find_knees(data);
   bend_straight_legs(data);
   bend_ = bend(data);
+}
+
+// The bodies between the sole and the root that one of the joints moves.
+std::vector<InverseKinematics::LegBody> InverseKinematics::sole_chain(
+    Side side, const std::vector<int>& joints) const {
+  std::vector<LegBody> chain;
+  for (int i = model_->sole(side).body; i > 0; i = model_->bodies()[i].parent) {
+    const auto found = std::find(joints.begin(), joints.end(), model_->bodies()[i].dof);
+    if (found != joints.end()) chain.push_back({i, static_cast<int>(found - joints.begin()), true});
+  }
+  return chain;
 }
 
 void InverseKinematics::find_leg_bodies(Side side) {
@@ -372,46 +417,30 @@ InverseKinematics::Residual InverseKinematics::residual(const PostureTarget& tar
   return e;
 }
 
-// The Jacobian of the sole's twist, 6 x joints. It is computed faster than by body_jacobian(),
-// which has all columns.
-MatrixXd InverseKinematics::leg_jacobian(const RobotData& data, Side side,
-                                         const std::vector<int>& leg) const {
+// Adds the columns of the joints of `chain` to the Jacobian of the sole's twist.
+template <class Jacobian>
+void InverseKinematics::add_sole_columns(const RobotData& data, Side side,
+                                         const std::vector<LegBody>& chain, Jacobian&& J) const {
   const Sole& sole = model_->sole(side);
   const Vector3d p = data.position[sole.body] + data.rotation[sole.body] * sole.frame.translation();
-  MatrixXd J = MatrixXd::Zero(6, static_cast<Eigen::Index>(leg.size()));
-  for (int i = sole.body; i > 0; i = model_->bodies()[i].parent) {
-    const Body& body = model_->bodies()[i];
-    const auto found = std::find(leg.begin(), leg.end(), body.dof);
-    if (found == leg.end()) continue;
-    const auto column = found - leg.begin();
-    const Vector3d a = body.ratio * data.axis[i];
-    if (body.prismatic) {
-      J.block<3, 1>(0, column) += a;
-    } else {
-      J.block<3, 1>(0, column) += a.cross(p - data.position[i]);
-      J.block<3, 1>(3, column) += a;
-    }
-  }
-  return J;
-}
-
-// The same Jacobian for a leg of six joints, written into the first columns of `rows`.
-void InverseKinematics::square_jacobian(const RobotData& data, Side side, SixRows& rows) const {
-  const Sole& sole = model_->sole(side);
-  const Vector3d p = data.position[sole.body] + data.rotation[sole.body] * sole.frame.translation();
-  auto J = rows.leftCols<6>();
-  J.setZero();
-  for (const LegBody& moved : leg_bodies_[static_cast<int>(side)]) {
+  for (const LegBody& moved : chain) {
     if (!moved.carries || moved.column < 0) continue;
     const Body& body = model_->bodies()[moved.body];
     const Vector3d a = body.ratio * data.axis[moved.body];
     if (body.prismatic) {
-      J.col(moved.column).head<3>() += a;
+      J.col(moved.column).template head<3>() += a;
     } else {
-      J.col(moved.column).head<3>() += a.cross(p - data.position[moved.body]);
-      J.col(moved.column).tail<3>() += a;
+      J.col(moved.column).template head<3>() += a.cross(p - data.position[moved.body]);
+      J.col(moved.column).template tail<3>() += a;
     }
   }
+}
+
+// The Jacobian for a leg of six joints, written into the first columns of `rows`.
+void InverseKinematics::square_jacobian(const RobotData& data, Side side, SixRows& rows) const {
+  auto J = rows.leftCols<6>();
+  J.setZero();
+  add_sole_columns(data, side, leg_bodies_[static_cast<int>(side)], J);
 }
 
 // The COG Jacobian of the six joints of a leg with the base at rest: (6)(7) for the links that the
@@ -523,9 +552,7 @@ bool InverseKinematics::newton(const PostureTarget& target, RobotState& state, R
 // swings has a smaller weight than one that carries.
 void InverseKinematics::damped(const PostureTarget& target, RobotState& state,
                                RobotData& data) const {
-  std::vector<int> joints = legs_[0];
-  joints.insert(joints.end(), legs_[1].begin(), legs_[1].end());
-  joints.insert(joints.end(), coupled_.begin(), coupled_.end());
+  const std::vector<int>& joints = damped_joints_;
   const auto n = static_cast<Eigen::Index>(joints.size());
   const Eigen::Index base = lacking_ ? 6 : 3, rows = lacking_ ? 18 : 15;
   const double roll = coupled_.empty() ? kRollWeight : kTrunkWeight;
@@ -553,19 +580,26 @@ void InverseKinematics::damped(const PostureTarget& target, RobotState& state,
   }
   stack(e, r);
   double lambda = 1e-6, before = 0;  // the longest step of a joint in the iteration before
-  MatrixXd J(rows, base + n), H(base + n, base + n);
+  const Eigen::Index unknowns = base + n;
+  RowMajorXd J(rows, unknowns + 1);      // the last column is the residual
+  RowMajorXd H(unknowns, unknowns + 1);  // the normal equations, with their right side
+  MatrixXd C;
+  VectorXd d;
   RobotState trial = state;
   for (int iteration = 0; iteration < 200 && r.cwiseAbs().maxCoeff() > kNewtonTolerance;
        ++iteration) {
     J.setZero();
+    J.col(unknowns) = r;
     for (int s = 0; s < 2; ++s) {
+      auto of_foot = J.block(6 * s, base, 6, n);
+      add_sole_columns(data, kSides[s], sole_chains_[s], of_foot);
+      if (firm[s] != 1) of_foot *= firm[s];
       J.block<3, 3>(6 * s, 0) = firm[s] * Eigen::Matrix3d::Identity();
-      J.block(6 * s, base, 6, n) = firm[s] * leg_jacobian(data, kSides[s], joints);
     }
     J.block<3, 3>(12, 0) = kCogWeight * Eigen::Matrix3d::Identity();
-    const MatrixXd C = cog_jacobian_floating(*model_, data);
+    held_base_cog_jacobian(*model_, data, C);
     for (Eigen::Index i = 0; i < n; ++i)
-      J.block<3, 1>(12, base + i) = kCogWeight * C.col(6 + joints[i]);
+      J.block<3, 1>(12, base + i) = kCogWeight * C.col(joints[i]);
     if (lacking_) {
       for (int s = 0; s < 2; ++s) {
         const Vector3d sole = sole_pose(*model_, data, kSides[s]).translation();
@@ -577,20 +611,29 @@ void InverseKinematics::damped(const PostureTarget& target, RobotState& state,
       const Eigen::Matrix3d turn = skew(e.trunk);
       J.block<3, 3>(15, 3) = trunk * (Eigen::Matrix3d::Identity() + turn / 2 + turn * turn / 12);
     }
-    VectorXd down = J.transpose() * r;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const Dof& dof = model_->dofs()[joints[i]];
-      const double theta = state.theta[joints[i]];
-      if ((theta >= dof.upper && down[base + i] > 0) ||
-          (theta <= dof.lower && down[base + i] < 0)) {
-        J.col(base + i).setZero();
-        down[base + i] = 0;
+    // The part of J' [J, r] on and above the diagonal. A foot has zeros for the other leg.
+    H.setZero();
+    for (Eigen::Index k = 0; k < rows; ++k) {
+      const double* const row = J.data() + k * (unknowns + 1);
+      for (Eigen::Index i = 0; i < unknowns; ++i) {
+        const double factor = row[i];
+        if (factor == 0) continue;
+        double* const sum = H.data() + i * (unknowns + 1);
+        for (Eigen::Index j = i; j <= unknowns; ++j) sum[j] += factor * row[j];
       }
     }
-    H.setZero();
-    H.selfadjointView<Eigen::Lower>().rankUpdate(J.transpose());
+    // A joint at its limit stays there.
+    for (Eigen::Index i = base; i < unknowns; ++i) {
+      const int joint = joints[i - base];
+      const Dof& dof = model_->dofs()[joint];
+      const double theta = state.theta[joint], down = H(i, unknowns);
+      if ((theta >= dof.upper && down > 0) || (theta <= dof.lower && down < 0)) {
+        H.col(i).setZero();
+        H.row(i).setZero();
+      }
+    }
     H.diagonal().array() += lambda * (lacking_ ? kRollWeight * kRollWeight : 1.0);
-    VectorXd d = solve_symmetric(H, down);  // reads the lower half
+    eliminate_symmetric(H, d);
     const double longest = d.tail(base + n - 3).cwiseAbs().maxCoeff();
     if (longest > kLargestJointStep) d *= kLargestJointStep / longest;
     trial = state;

@@ -112,10 +112,13 @@ class InverseKinematics {
   bool newton(const PostureTarget& target, RobotState& state, RobotData& data, double& error,
               std::array<double, 2>& legs_bend) const;
   void damped(const PostureTarget& target, RobotState& state, RobotData& data) const;
-  Eigen::MatrixXd leg_jacobian(const RobotData& data, Side side, const std::vector<int>& leg) const;
+  template <class Jacobian>
+  void add_sole_columns(const RobotData& data, Side side, const std::vector<LegBody>& chain,
+                        Jacobian&& J) const;
   void square_jacobian(const RobotData& data, Side side, SixRows& rows) const;
   Eigen::Matrix<double, 3, 6> leg_cog_jacobian(RobotData& data, Side side) const;
   std::array<double, 2> bend(const RobotData& data) const;
+  std::vector<LegBody> sole_chain(Side side, const std::vector<int>& joints) const;
   void find_leg_bodies(Side side);
   void find_knees(RobotData& data);
   void bend_straight_legs(RobotData& data);
@@ -126,6 +129,9 @@ class InverseKinematics {
   std::array<std::vector<int>, 2> legs_;
   std::array<std::vector<LegBody>, 2> leg_bodies_;  ///< bodies of each leg, leaves first
   std::vector<int> coupled_;
+  std::vector<int> damped_joints_;  ///< unknown joints of damped(): those of the legs, coupled ones
+  /// Bodies from each sole up to the root that these joints move, with their columns among them.
+  std::array<std::vector<LegBody>, 2> sole_chains_;
   std::vector<bool> solved_;
   bool square_ = false;   ///< both legs have six joints
   bool lacking_ = false;  ///< a leg has fewer than six joints

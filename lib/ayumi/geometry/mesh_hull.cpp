@@ -74,9 +74,15 @@ std::vector<Vector3d> outer_vertices(const TriangleMesh& mesh) {
     const double z = 1 - (2 * i + 1.0) / kDirections, turn = M_PI * (3 - std::sqrt(5.0)) * i;
     const double r = std::sqrt(1 - z * z);
     const Vector3d out(r * elementary::cos(turn), r * elementary::sin(turn), z);
-    result.push_back(*std::max_element(all.begin(), all.end(), [&](const auto& p, const auto& q) {
-      return p.dot(out) < q.dot(out);
-    }));
+    size_t farthest = 0;
+    double most = all[0].dot(out);
+    for (size_t k = 1; k < all.size(); ++k) {
+      const double distance = all[k].dot(out);
+      if (!(most < distance)) continue;
+      most = distance;
+      farthest = k;
+    }
+    result.push_back(all[farthest]);
   }
   sort_out(result);
   return result;
@@ -88,19 +94,20 @@ std::vector<HullFace> hull_faces(const std::vector<Vector3d>& points) {
   for (const Vector3d& p : points) extent = std::max(extent, (p - points[0]).norm());
   const double flat = kCoplanar * extent;
   // The plane of three points contains a face if no point is on its outer side.
+  std::vector<Vector3d> on;
   const auto take = [&](const Vector3d& origin, const Vector3d& normal) {
+    on.clear();
+    bool any_below = false;
+    for (const Vector3d& p : points) {
+      const double out = normal.dot(p - origin);
+      if (out > flat) return;  // most planes end here, after a few points
+      any_below |= out < -flat;
+      if (out >= -flat) on.push_back(p);
+    }
     for (const HullFace& face : faces)
       if ((face.normal - normal).squaredNorm() < 1e-8 &&
           std::abs(normal.dot(face.corners[0] - origin)) <= 2 * flat)
         return;
-    std::vector<Vector3d> on;
-    bool any_below = false;
-    for (const Vector3d& p : points) {
-      const double out = normal.dot(p - origin);
-      if (out > flat) return;
-      any_below |= out < -flat;
-      if (out >= -flat) on.push_back(p);
-    }
     if (any_below) faces.push_back({normal, outline(on, normal)});
   };
   for (size_t i = 0; i < points.size(); ++i)

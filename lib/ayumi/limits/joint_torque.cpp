@@ -48,15 +48,15 @@ void judge_joint_torques(JudgedMotion& motion, const JudgedSample& s) {
 }
 
 // For each dof, the largest absolute torque over the watched samples.
-Eigen::VectorXd watched_torques(const RowSite& site, int point) {
+Eigen::VectorXd watched_torques(RowSite& site, int point) {
   Eigen::VectorXd most = Eigen::VectorXd::Zero(site.model.dof_count());
-  RobotData data(site.model);
   for (const CommandSample* s : site.watched(point)) {
-    const Eigen::VectorXd force = inverse_dynamics(site.model, s->state, s->acceleration, data);
+    const Eigen::VectorXd force =
+        inverse_dynamics(site.model, s->state, s->acceleration, site.data);
     const auto feet =
         shared_load(site.model, site.points[point], s->state.base.position, force.head<6>());
     most = most.cwiseMax(
-        motor_torques(site.model, site.actuators, s->state, s->acceleration, force, feet, data)
+        motor_torques(site.model, site.actuators, s->state, s->acceleration, force, feet, site.data)
             .cwiseAbs());
   }
   return most;

@@ -37,7 +37,6 @@ const std::vector<GroundDemand>& RowSite::watched_demand(int point) {
   const auto [found, is_new] = demand_of.try_emplace(point);
   if (!is_new) return found->second;
   const SupportPlane& plane = points[point].plane;
-  RobotData data(model);
   for (const CommandSample* sample : watched(point)) {
     const Vector6d wrench =
         inverse_dynamics(model, sample->state, sample->acceleration, data).head<6>();

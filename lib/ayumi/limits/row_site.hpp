@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ayumi/demand/contact_plan.hpp"
+#include "ayumi/dynamics/robot_data.hpp"
 #include "ayumi/limits/limit.hpp"
 #include "ayumi/limits/row.hpp"
 #include "ayumi/motion/correction.hpp"
@@ -133,6 +134,7 @@ struct RowSite {
   std::vector<RowBlock> rows = {};  ///< rows that are placed so far
   /// Ground demands that watched_demand() keeps.
   std::map<int, std::vector<GroundDemand>> demand_of = {};
+  RobotData data = RobotData(model);  ///< workspace of the inverse dynamics
 
   int count() const { return static_cast<int>(points.size()); }
   double tolerance(FindingKind kind) const { return tolerances[kind]; }

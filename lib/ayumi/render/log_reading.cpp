@@ -58,6 +58,9 @@ constexpr double kSeenMove = 0.05, kSeenShare = 0.15;
 // Share of the move within which an extreme that is held counts as reached. Chosen: in a quintic
 // between rests, 2 % of the distance are left after 86 % of the time.
 constexpr double kReached = 0.02;
+// Longest time near an extreme for which it is not held, but passed [s]. Chosen: a kick or a nod
+// stays near its end for a quarter of a second.
+constexpr double kPassed = 0.5;
 
 /// Adds the instants at which a curve turns back or comes to rest after a move of at least `least`,
 /// with the sizes of these moves.
@@ -70,7 +73,11 @@ void add_turns(const std::vector<double>& values, double dt, size_t first, doubl
     // Limited to a value below the weight of every event.
     const double move = std::min(10.0, std::abs(values[at] - values[from]));
     size_t reached = from;
-    while (reached < at && std::abs(values[reached] - values[at]) > kReached * move) ++reached;
+    const auto near = [&](size_t k) { return std::abs(values[k] - values[at]) <= kReached * move; };
+    while (reached < at && !near(reached)) ++reached;
+    size_t left = at;
+    while (left + 1 < values.size() && near(left + 1)) ++left;
+    if (static_cast<double>(left - reached) * dt < kPassed) reached = at;
     // The place where the move began was already shown.
     const bool back = std::abs(values[at] - values[0]) < 0.3 * move;
     out.push_back({static_cast<double>(first + reached) * dt, back ? 0.5 * move : move});

@@ -4,11 +4,12 @@
 // is solved from the ZMP depends on the pace. Along the path, math/path_timing finds the quickest
 // timing within the rows of study/path_limits, which is then made smooth, sampled and checked.
 // Where the check finds an error, a smaller share of the limits may be used, and the next round
-// begins.
+// begins. Where the ZMP comes near the edge of a sole, the motion is played in open loop, too.
 //
 // Where nothing moves, no limit binds: such pauses keep their length, or are passed at the largest
 // pace.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,19 +21,25 @@
 namespace ayumi {
 
 struct LocalRetimeOptions {
-  PathLimitOptions path;                ///< the search sets its smallest margin and its pauses
-  bool keep_pauses = false;             ///< pauses last as long as in the given pattern
+  PathLimitOptions path;     ///< the search sets its smallest margin and its pauses
+  bool keep_pauses = false;  ///< pauses last as long as in the given pattern
+  /// The ground on which the robot has to stand in open loop wherever it stands at the uniform
+  /// pace; nothing if this does not matter.
+  std::optional<World> world = {};
   double dt = 0.001;                    ///< period of sampling [s]
   double fastest = 0.05, slowest = 20;  ///< range of the uniform scale of the path
 };
 
 struct LocalPace {
   bool found = false;        ///< a timing passes the check
-  Pattern pattern;           ///< the pattern with this timing, as a table
+  Pattern pattern;           ///< the pattern with this timing, usually as a table
   CommandSeries series;      ///< samples of the pattern
   ConsistencyReport report;  ///< check of the samples
-  double scale = 1;          ///< duration divided by that of the given pattern
-  double path_scale = 1;     ///< uniform scale of the path
+  /// Whether the robot stands in open loop, unless it does not stand at the uniform pace either.
+  /// The result may be the motion at the uniform pace for this reason.
+  bool stands = true;
+  double scale = 1;       ///< duration divided by that of the given pattern
+  double path_scale = 1;  ///< uniform scale of the path
   std::vector<BindingLimit>
       binding;     ///< limits that decide the pace; the one with the largest share comes first
   int rounds = 0;  ///< number of timings that were checked

@@ -179,7 +179,7 @@ void PathLimits::compute_forces() {
   });
 }
 
-void PathLimits::linearize_point(size_t i, double u, double x, double share) {
+void PathLimits::linearize_point(size_t i, double u, double x, double share, RobotData& data) {
   TimingPoint& point = timing_[i];
   point.rows.clear();
   origins_[i].clear();
@@ -219,8 +219,7 @@ void PathLimits::linearize_point(size_t i, double u, double x, double share) {
 
   Slopes torque;
   const auto find_torques = [&] {
-    RobotData data(model_);
-    RobotState state = sample.state;
+    const RobotState& state = sample.state;
     update_positions(model_, state, data);
     const auto at = [&](double du, double dx) {
       const VectorXd force = f.rest + (u + du) * f.of_u + (x + dx) * f.of_x;
@@ -273,7 +272,8 @@ void PathLimits::linearize_point(size_t i, double u, double x, double share) {
 
 void PathLimits::linearize(const std::vector<double>& u, const std::vector<double>& x,
                            const std::vector<double>& share) {
-  for_each_point([&](size_t i, RobotData&) { linearize_point(i, u[i], x[i], share[i]); });
+  for_each_point(
+      [&](size_t i, RobotData& data) { linearize_point(i, u[i], x[i], share[i], data); });
 }
 
 std::vector<PathRow> PathLimits::rows_at(int point) const {

@@ -87,7 +87,7 @@ class PathLimits {
   void place_points(const PathLimitOptions& options);
   void place_rows();
   void compute_forces();
-  void linearize_point(size_t i, double u, double x, double share);
+  void linearize_point(size_t i, double u, double x, double share, RobotData& data);
   template <class Work>
   void for_each_point(const Work& work) const;
 

@@ -22,6 +22,7 @@ std::vector<Keyframe> kept_keys(const Pattern& pattern) {
     rest.feet = key.feet;
     rest.weights = key.weights;
     rest.place = key.place;
+    rest.pointer = key.pointer;
     kept.push_back(std::move(rest));
   }
   return kept;
@@ -41,7 +42,6 @@ Pattern baked(const RobotModel& model, const Pattern& pattern, const CommandSeri
   const auto has_step = [](const Phase& phase) { return phase.swing && phase.swing->step; };
   if (std::any_of(result.phases.begin(), result.phases.end(), has_step))
     result.phases = FootPlan(model, pattern).phases();
-  for (Phase& phase : result.phases) phase.pointer.clear();
   if (!result.phases.empty())
     result.phases.back().until = std::max(result.phases.back().until, series.duration());
   result.table.emplace();

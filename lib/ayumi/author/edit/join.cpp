@@ -277,6 +277,8 @@ Pattern joined(const RobotModel& model, const MotionPart& first, const MotionPar
   const size_t rows = a.samples.size() + between.size() + b.samples.size() - skip;
   Pattern result = plain(model, first.pattern, a, table, rows);
   Pattern rest = plain(model, second.pattern, b, table, b.samples.size());
+  for (Phase& phase : rest.phases) phase.pointer.clear();
+  for (Keyframe& key : rest.keyframes) key.pointer.clear();
   for (const Side side : {Side::left, Side::right})
     if (has_keys(result, side) != has_keys(rest, side))
       write_swings_as_keys(model, side, has_keys(result, side) ? rest : result);
@@ -367,7 +369,18 @@ Keyframe keys_at(const RobotModel& model, const KeyedTracks& of, double t, const
                          (*tracks.torso)[2].at(t).value);
   else if (all.tracks.torso)
     key.torso = Vector3d(0, 0, matrix_to_rpy(of.feet.pose(Side::left, t).linear()).z());
+  for (const Side side : {Side::left, Side::right}) {
+    if (!has_keys(of.pattern, side) && !has_keys(all.pattern, side)) continue;
+    const Isometry3d pose = of.feet.pose(side, t);
+    key.feet[static_cast<size_t>(side)] =
+        Foothold{pose.translation(), matrix_to_rpy(pose.linear())};
+  }
   return key;
+}
+
+bool has_swings(const Pattern& pattern, Side side) {
+  return std::any_of(pattern.phases.begin(), pattern.phases.end(),
+                     [&](const Phase& phase) { return phase.swing && phase.swing->foot == side; });
 }
 
 void require_keys(const KeyedTracks& part) {
@@ -378,8 +391,6 @@ void require_keys(const KeyedTracks& part) {
   };
   if (part.tracks.joint_driven)
     stop(in_file(pattern, "/keyframes"), "the joints of the legs follow " + part.tracks.driver);
-  for (const Keyframe& key : pattern.keyframes)
-    if (key.feet[0] || key.feet[1]) stop(key.place, "a foot has keys");
   for (const auto& [link, led] : part.hands)
     if (led)
       stop(in_file(pattern, "/keyframes"),
@@ -396,6 +407,10 @@ void require_same_tracks(const KeyedTracks& a, const KeyedTracks& b) {
              "; the keys can be kept only if the two motions agree in this point");
   };
   if (a.tracks.zmp.has_value() != b.tracks.zmp.has_value()) stop("keys of the ZMP");
+  for (const Side side : {Side::left, Side::right})
+    if ((has_keys(a.pattern, side) && has_swings(b.pattern, side)) ||
+        (has_keys(b.pattern, side) && has_swings(a.pattern, side)))
+      stop(std::string("keys of the ") + name_of(side) + " foot, and the foot swings in the other");
   for (const size_t axis : {0, 1})
     if (a.tracks.cog[axis].has_value() != b.tracks.cog[axis].has_value())
       stop("keys of the COG position");
@@ -448,8 +463,6 @@ Pattern chained(const RobotModel& model, const MotionPart& first, const MotionPa
   Pattern result = first.pattern;
   result.repair = {};
   result.parameters.clear();
-  for (Phase& phase : result.phases) phase.pointer.clear();
-  for (Keyframe& key : result.keyframes) key.pointer.clear();
   const double end = first.pattern.phases.back().until, later = end + over;
   Keyframe at_end = keys_at(model, one, end, two);
   add_key(result.keyframes, at_end);
@@ -459,7 +472,18 @@ Pattern chained(const RobotModel& model, const MotionPart& first, const MotionPa
     at_start.weights[joint] = model.joint_weight()[find_joint(model, joint, {"", "/weights"})];
   for (const auto& [link, led] : two.hands) at_start.hands[link] = {};
   if (two.gaze) at_start.gaze = LinkTarget{};
-  move_key(shift, at_start);
+  const auto move = [&](Keyframe& key) {
+    // Places are rounded so that they print as they would be written [1/m], [1/rad].
+    constexpr double kParts = 1e9;
+    move_key(shift, key);
+    for (auto& foot : key.feet) {
+      if (!foot) continue;
+      move_foothold(shift, *foot);
+      foot->position = ((kParts * foot->position).array().round() / kParts + 0.0).matrix();
+      foot->rpy = ((kParts * foot->rpy).array().round() / kParts + 0.0).matrix();
+    }
+  };
+  move(at_start);
   at_start.t = later;
   if (over > 0)
     add_key(result.keyframes, at_start);
@@ -473,7 +497,7 @@ Pattern chained(const RobotModel& model, const MotionPart& first, const MotionPa
   }
   for (const Keyframe& each : second.pattern.keyframes) {
     Keyframe key = translated(model, second.pattern, first.pattern, each);
-    move_key(shift, key);
+    move(key);
     key.t = round_time(key.t + later);
     add_key(result.keyframes, key);
   }

@@ -87,7 +87,6 @@ Pattern with_key_edited(const RobotModel& model, const Pattern& pattern, const K
                  " s, in which goals replace keys; choose a time outside this phase");
     if (!edit.copy) result.keyframes.erase(found);
     key.t = *edit.to;
-    key.pointer.clear();
     put_key(result.keyframes, key);
   } else {
     *found = key;
@@ -185,13 +184,11 @@ Pattern alternated(const RobotModel& model, const Pattern& pattern, int times, b
   Pattern relative = pattern;
   for (size_t i = 0; i < relative.phases.size(); ++i) {
     Phase& phase = relative.phases[i];
-    phase.pointer.clear();
     if (!phase.swing) continue;
     const auto foot = static_cast<size_t>(index(phase.swing->foot));
     phase.swing->step = step_seen(plan, plan.phases()[i], start[1 - foot].inverse() * start[foot]);
     phase.swing->to = {};
   }
-  for (Keyframe& key : relative.keyframes) key.pointer.clear();
   relative.repair = {};
   const Pattern image = mirrored(model, relative);
   const double length = pattern.phases.back().until;
@@ -208,10 +205,12 @@ Pattern alternated(const RobotModel& model, const Pattern& pattern, int times, b
                              on_level_ground(then[static_cast<size_t>(index(side))]).inverse();
     require_moved_together(shift, next);
     for (Phase phase : next.phases) {
+      phase.pointer.clear();
       phase.until = round_time(phase.until + k * length);
       result.phases.push_back(phase);
     }
     for (Keyframe key : next.keyframes) {
+      key.pointer.clear();
       key.t = round_time(key.t + k * length);
       if (key.posture && odd && image.postures != relative.postures) {
         for (const auto& [joint, angle] : posture_joints(model, image, *key.posture, key.place))

@@ -23,9 +23,11 @@ Pattern read_pattern(const std::filesystem::path& path,
                      const std::map<std::string, double>& set_parameters = {});
 
 /// Reads the bytes of a pattern file in the same way. `path` names it in messages, and the files
-/// that it includes are searched beside it.
+/// that it includes are searched beside it. If a `table` is given, it stands for the file that the
+/// text names as its table, which then need not exist.
 Pattern pattern_of_text(const std::string& text, const std::filesystem::path& path,
-                        const std::map<std::string, double>& set_parameters = {});
+                        const std::map<std::string, double>& set_parameters = {},
+                        const DenseTable* table = nullptr);
 
 /// A posture library ("ayumi.postures/1"), which patterns can include.
 struct PostureLibrary {

@@ -310,7 +310,8 @@ Pattern read_pattern(const fs::path& path, const std::map<std::string, double>& 
 }
 
 Pattern pattern_of_text(const std::string& text, const fs::path& path,
-                        const std::map<std::string, double>& set_parameters) {
+                        const std::map<std::string, double>& set_parameters,
+                        const DenseTable* given) {
   std::string bytes = text;
   const Json document = parse_json(bytes, path.string(), ErrorCode::bad_pattern);
   const JsonNode root = root_of(document, path.string(), ErrorCode::bad_pattern);
@@ -343,7 +344,10 @@ Pattern pattern_of_text(const std::string& text, const fs::path& path,
       fail(ErrorCode::usage, {path.string()},
            "parameter '" + name + "' is declared, but nothing in the pattern uses it");
 
-  if (const auto table = root.find("table")) {
+  if (const auto table = root.find("table"); table && given) {
+    pattern.table = *given;
+    pattern.table->file = table->string();
+  } else if (table) {
     const fs::path file = named_file(*table, path.parent_path());
     bytes += read_file(file);
     pattern.table = read_dense_table(file);

@@ -26,6 +26,12 @@ struct PatternScope {
 /// Whether a pattern's "robot" is a path and not a bundled name.
 bool names_a_path(const std::string& robot);
 
+/// A relative path of files in `from`, changed so that it is right for files in `to`.
+std::string rebased(const std::string& name, const std::filesystem::path& from,
+                    const std::filesystem::path& to);
+/// The pattern with relative paths of robot, table and schema that are right in the folder `to`.
+Pattern moved_to_folder(const Pattern& pattern, const std::filesystem::path& to);
+
 /// Throws an error for a key that pattern_keys() does not list for `kind`.
 void only_pattern_keys(const JsonNode& node, const std::string& kind);
 

@@ -32,9 +32,15 @@ std::vector<fs::path> pattern_files(const fs::path& path) {
 
 void write_pattern_and_table(const fs::path& path, const Pattern& pattern,
                              const std::vector<std::string>& comments, const TableCaution& caution,
-                             const std::string& sequence) {
+                             const std::string& sequence, const std::string& text) {
+  const auto write_text = [&](const Pattern& named) {
+    if (text.empty())
+      write_pattern(path, named, comments);
+    else
+      write_file(path, text);
+  };
   if (!pattern.table) {
-    write_pattern(path, pattern, comments);
+    write_text(pattern);
     return;
   }
   const fs::path table = table_beside(path);
@@ -63,7 +69,7 @@ void write_pattern_and_table(const fs::path& path, const Pattern& pattern,
     }
     write_file(table, dense_table_csv(*named.table, caution));
     written.push_back(table);
-    write_pattern(path, named, comments);
+    write_text(named);
   } catch (...) {
     std::error_code ignored;
     for (const fs::path& file : written) fs::remove(file, ignored);

@@ -26,10 +26,11 @@ std::vector<std::filesystem::path> pattern_files(const std::filesystem::path& pa
 /// written to sequence_beside(path), and the head of the table names that file. A table that
 /// already names a sequence keeps this name as long as its angles are those of the import.
 /// Afterwards, either all files are there or none. The head of the table has the caution of the run
-/// from which the table comes.
+/// from which the table comes. If `text` is not empty, it is the text of the pattern.
 void write_pattern_and_table(const std::filesystem::path& path, const Pattern& pattern,
                              const std::vector<std::string>& comments = {},
-                             const TableCaution& caution = {}, const std::string& sequence = {});
+                             const TableCaution& caution = {}, const std::string& sequence = {},
+                             const std::string& text = {});
 
 /// The bytes of the sequence from which the pattern's table was imported. Throws Error(bad_file) if
 /// the file is missing or is not the imported one.

@@ -257,7 +257,8 @@ class Writer {
   const Pattern& pattern_;
 };
 
-// A relative path of files in `from`, changed so that it is right for files in `to`.
+}  // namespace
+
 std::string rebased(const std::string& name, const fs::path& from, const fs::path& to) {
   if (fs::path(name).is_absolute() || from.lexically_normal() == to.lexically_normal()) return name;
   std::error_code ignored;
@@ -265,7 +266,21 @@ std::string rebased(const std::string& name, const fs::path& from, const fs::pat
   return relative.empty() ? fs::absolute(from / name).string() : relative.string();
 }
 
-}  // namespace
+Pattern moved_to_folder(const Pattern& pattern, const fs::path& to) {
+  Pattern moved = pattern;
+  if (pattern.file.empty()) return moved;
+  const fs::path from = fs::path(pattern.file).parent_path();
+  if (moved.table) moved.table->file = rebased(moved.table->file, from, to);
+  if (names_a_path(moved.robot)) {
+    moved.robot = rebased(moved.robot, from, to);
+    // The robot is a folder beside the pattern, or the pattern's own folder. Its name alone would
+    // mean a bundled robot.
+    if (!names_a_path(moved.robot)) moved.robot = "./" + moved.robot;
+  }
+  if (!moved.schema.empty() && moved.schema.find("://") == std::string::npos)
+    moved.schema = rebased(moved.schema, from, to);
+  return moved;
+}
 
 std::string correction_text(const CorrectionTrack& track) {
   Members columns;
@@ -301,21 +316,7 @@ std::string pattern_text(const Pattern& pattern, const std::vector<std::string>&
 
 void write_pattern(const fs::path& path, const Pattern& pattern,
                    const std::vector<std::string>& comments) {
-  Pattern moved = pattern;
-  if (!pattern.file.empty()) {
-    const fs::path from = fs::path(pattern.file).parent_path();
-    const fs::path to = path.parent_path();
-    if (moved.table) moved.table->file = rebased(moved.table->file, from, to);
-    if (names_a_path(moved.robot)) {
-      moved.robot = rebased(moved.robot, from, to);
-      // The robot is a folder beside the pattern, or the pattern's own folder. Its name alone would
-      // mean a bundled robot.
-      if (!names_a_path(moved.robot)) moved.robot = "./" + moved.robot;
-    }
-    if (!moved.schema.empty() && moved.schema.find("://") == std::string::npos)
-      moved.schema = rebased(moved.schema, from, to);
-  }
-  write_file(path, pattern_text(moved, comments));
+  write_file(path, pattern_text(moved_to_folder(pattern, path.parent_path()), comments));
 }
 
 }  // namespace ayumi

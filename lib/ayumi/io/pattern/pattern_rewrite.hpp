@@ -1,0 +1,41 @@
+#pragma once
+// Writes the changes of an edited pattern into the text of its author. Comments, order, spacing,
+// parameters, expressions, blocks that repeat and included files stay wherever the values around
+// them stay or have a text of their own: an expression that changes its sign becomes
+// "-(${stride})", and one whose time is scaled becomes "(${lift_off})*1.25".
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ayumi/motion/pattern.hpp"
+
+namespace ayumi {
+
+struct RewriteOptions {
+  std::filesystem::path out = {};  ///< file of the new text; relative paths are valid from there
+  std::map<std::string, double> set = {};  ///< parameters that were set when the text was read
+  double time_scale = 1;                   ///< factor by which the edit multiplied all times
+};
+
+/// A text, and the pattern that it describes. Numbers that are added to expressions are rounded to
+/// 1e-6, so values of the pattern may differ by as much from those of the edit.
+struct RewrittenPattern {
+  std::string text;
+  Pattern pattern;
+};
+
+/// `text` with the changes that lead from `before`, which was read from it, to `after`. Phases and
+/// keyframes of `after` belong to those of the text that have the same pointer; those without a
+/// pointer are new. A table is only named, not written. Nothing if the text cannot express the
+/// changes, for example different changes of the rounds of a block that repeats.
+std::optional<RewrittenPattern> rewritten(const std::string& text, const Pattern& before,
+                                          const Pattern& after, const RewriteOptions& options);
+
+/// What is in `text` but not in `kept`: comments, expressions, parameters, blocks that repeat and
+/// included files, each with its number, such as "3 comments". Both are texts of patterns.
+std::vector<std::string> lost_marks(const std::string& text, const std::string& kept);
+
+}  // namespace ayumi

@@ -1,0 +1,160 @@
+// An edited pattern is written into the text of its author: what the edit does not change stays as
+// it was written.
+#include <gtest/gtest.h>
+
+#include "ayumi/author/edit/edit.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/io/pattern/pattern_rewrite.hpp"
+#include "ayumi/plan/sample.hpp"
+#include "tests/support/hoap1.hpp"
+
+namespace ayumi::test {
+namespace {
+
+const std::string kAuthored = R"({
+  // A walk with one arm up.
+  "format": "ayumi.pattern/1", /* spaced   oddly */ "robot" : "hoap1",
+  "parameters": { "stride": 3e-2, "lift_off": 1.120 },
+	"units": {"angle":"deg"},
+  "postures": { "up": {"l_shoulder_pitch": -60 } },   // tried on the robot
+  "phases": [
+    { "until": "${lift_off}", "support": "both" },   // stands
+    { "duration": 0.45, "support": "left",
+      "swing": { "foot": "right", "to": ["${stride}*2", -0.0390] } },
+
+    { "repeat": 2, "count": "i", "phases": [   // two rounds
+      { "duration": 0.2, "support": "both" },
+      { "duration": 0.45, "support": "right", "swing": { "foot": "left", "step": {"side": "0.002*${i}"} } }
+    ] },
+    // the end
+    { "until": 4, "support": "both" }
+  ],
+  "keyframes": [
+    {"t":0,"zmp":"center"},{"t":"${lift_off}","zmp":"left"}, // two on one line
+    { "after": 1.38,   // late
+      "joints": { "l_elbow": -30.0, "r_elbow": "-10*${stride}" } },
+    { "t": 3, "zmp": [0.01, "${stride}/3"], "joints": { "l_elbow": -10 } }
+  ],
+  "scenario": [ { "type": "impulse", "at": 2, "duration": 0.02, "on": "cog", "impulse": 0.2, "direction": [0, 2, 0] } ]
+}
+)";
+
+Pattern read(const std::string& text) { return pattern_of_text(text, "walk.json"); }
+
+RewrittenPattern kept(const Pattern& after, double time_scale = 1) {
+  const auto result =
+      rewritten(kAuthored, read(kAuthored), after, {.out = "out.json", .time_scale = time_scale});
+  if (!result) throw std::runtime_error("the text is not kept");
+  return *result;
+}
+
+// The text with the given replacements, each of which must be possible.
+std::string changed(std::string text,
+                    const std::vector<std::pair<std::string, std::string>>& changes) {
+  size_t from = 0;
+  for (const auto& [before, after] : changes) {
+    const size_t at = text.find(before, from);
+    if (at == std::string::npos) throw std::runtime_error("the text does not hold " + before);
+    text.replace(at, before.size(), after);
+    from = at + after.size();
+  }
+  return text;
+}
+
+TEST(KeptText, NothingChangesWithoutAnEdit) {
+  EXPECT_EQ(kept(read(kAuthored)).text, kAuthored);
+  EXPECT_TRUE(lost_marks(kAuthored, kAuthored).empty());
+}
+
+TEST(KeptText, TheMirrorImageExchangesNamesAndSigns) {
+  const std::string image =
+      changed(kAuthored, {{"\"l_shoulder_pitch\": -60", "\"r_shoulder_pitch\": -60"},
+                          {"\"left\"", "\"right\""},
+                          {"\"right\"", "\"left\""},
+                          {"-0.0390", "0.039"},
+                          {"\"right\"", "\"left\""},
+                          {"\"left\"", "\"right\""},
+                          {"\"0.002*${i}\"", "\"-(0.002*${i})\""},
+                          {"\"left\"", "\"right\""},
+                          {"\"l_elbow\": -30.0, \"r_elbow\": \"-10*${stride}\"",
+                           "\"r_elbow\": -30.0, \"l_elbow\": \"-10*${stride}\""},
+                          {"\"${stride}/3\"", "\"-(${stride}/3)\""},
+                          {"\"l_elbow\": -10", "\"r_elbow\": -10"},
+                          {"[0, 2, 0]", "[0, -2, 0]"}});
+  const RewrittenPattern result = kept(mirrored(hoap1(), read(kAuthored)));
+  EXPECT_TRUE(lost_marks(kAuthored, result.text).empty());
+  EXPECT_EQ(pattern_text(result.pattern), pattern_text(mirrored(hoap1(), read(kAuthored))));
+  EXPECT_EQ(result.text, image);
+  EXPECT_NE(result.text.find("{ \"duration\": 0.45, \"support\": \"right\",\n      \"swing\": { "
+                             "\"foot\": \"left\", \"to\": [\"${stride}*2\", 0.039] } },\n\n"),
+            std::string::npos)
+      << result.text;
+}
+
+TEST(KeptText, AnotherPaceMultipliesTimes) {
+  const RewrittenPattern result = kept(retimed(hoap1(), read(kAuthored), 1.25), 1.25);
+  EXPECT_EQ(result.text,
+            changed(kAuthored, {{"\"${lift_off}\"", "\"(${lift_off})*1.25\""},
+                                {"0.45", "0.5625"},
+                                {"0.2", "0.25"},
+                                {"0.45", "0.5625"},
+                                {"\"until\": 4", "\"until\": 5"},
+                                {"\"t\":\"${lift_off}\"", "\"t\":\"(${lift_off})*1.25\""},
+                                {"1.38", "1.725"},
+                                {"\"t\": 3", "\"t\": 3.75"},
+                                {"\"at\": 2", "\"at\": 2.5"}}));
+}
+
+TEST(KeptText, AKeyIsMovedAndCopiedWithItsWords) {
+  const Pattern walk = read(kAuthored);
+  EXPECT_EQ(kept(with_key_edited(hoap1(), walk, {.at = 3, .to = 3.5})).text,
+            changed(kAuthored, {{"\"t\": 3,", "\"t\": 3.5,"}}));
+  const std::string key =
+      R"({ "t": 3, "zmp": [0.01, "${stride}/3"], "joints": { "l_elbow": -10 } })";
+  const std::string later = changed(key, {{"\"t\": 3", "\"t\": 3.4"}});
+  EXPECT_EQ(kept(with_key_edited(hoap1(), walk, {.at = 3, .to = 3.4, .copy = true})).text,
+            changed(kAuthored, {{key, key + ",\n    " + later}}));
+  // The key that follows keeps its time, which is written relative to the one before.
+  const std::string early = kept(with_key_edited(hoap1(), walk, {.at = 3, .to = 0.5})).text;
+  EXPECT_NE(early.find("{ \"t\": 0.5, \"zmp\": [0.01, \"${stride}/3\"]"), std::string::npos)
+      << early;
+  EXPECT_NE(early.find("\"after\": 1.38,   // late"), std::string::npos) << early;
+  EXPECT_NEAR(read(early).keyframes[3].t, 2.5, 1e-9);
+}
+
+const std::string kBow = R"({ "format": "ayumi.pattern/1", "robot": "hoap1",   // a bow
+  "phases": [ { "until": 2, "support": "both" } ],
+  "keyframes": [ { "t": 0, "zmp": "center", "cog": { "height": 0.22 } },
+    { "t": 1, "cog": { "height": 0.21 } }, // low
+    { "t": 2, "cog": { "height": 0.22 } } ] })";
+
+TEST(KeptText, AMotionThatFollowsIsAddedAtTheEnd) {
+  const Pattern one = read(kBow);
+  const CommandSeries series = sample(hoap1(), one);
+  const Pattern both = chained(hoap1(), {one, series}, {one, series}, 0);
+  const auto result = rewritten(kBow, one, both, {.out = "out.json"});
+  ASSERT_TRUE(result.has_value());
+  EXPECT_TRUE(lost_marks(kBow, result->text).empty()) << result->text;
+  EXPECT_EQ(result->pattern.keyframes.size(), both.keyframes.size());
+  EXPECT_EQ(lost_marks(kBow, "{}"), std::vector<std::string>{"2 comments"});
+}
+
+TEST(KeptText, ATableTakesTheKeysAway) {
+  const Pattern bow = read(kBow);
+  const Pattern table = baked(hoap1(), bow, sample(hoap1(), bow), "out.csv");
+  const auto result = rewritten(kBow, bow, table, {.out = "out.json"});
+  ASSERT_TRUE(result.has_value());
+  EXPECT_NE(result->text.find("// a bow"), std::string::npos) << result->text;
+  EXPECT_NE(result->text.find("\"table\": \"out.csv\""), std::string::npos) << result->text;
+  EXPECT_EQ(lost_marks(kBow, result->text), std::vector<std::string>{"1 comment"});
+}
+
+// Rounds of a block that change in different ways have no common text.
+TEST(KeptText, RoundsThatDifferAreNotKept) {
+  Pattern walk = read(kAuthored);
+  walk.phases[3].swing->lift = 0.03;
+  EXPECT_FALSE(rewritten(kAuthored, read(kAuthored), walk, {.out = "out.json"}).has_value());
+}
+
+}  // namespace
+}  // namespace ayumi::test
