@@ -93,5 +93,28 @@ TEST_F(Hoap1Clearance, FeetThatMeetAreSeen) {
   EXPECT_LT(nearest(state).first, 0);
 }
 
+// A file without collision shapes still states the soles, and soles are solid.
+TEST_F(Hoap1Clearance, SolesOfFeetWithoutShapesOverlap) {
+  RobotDescription bare = model.description();
+  for (LinkDescription& link : bare.links) link.collisions.clear();
+  const RobotModel robot(bare);
+  const CollisionModel soles(robot);
+  ASSERT_EQ(soles.pairs().size(), 1u);
+  const int left = robot.sole(Side::left).body, right = robot.sole(Side::right).body;
+  EXPECT_EQ(std::minmax(soles.pairs()[0].a, soles.pairs()[0].b), std::minmax(left, right));
+  RobotData placed(robot);
+  const auto clearance = [&](double across, double up) {
+    update_positions(robot, robot.rest_state(), placed);
+    // The foot bodies stand side by side, `across` apart from sole centre to sole centre.
+    const Eigen::Vector3d way = placed.pose(left).translation() - placed.pose(right).translation();
+    placed.position[static_cast<size_t>(left)] += Eigen::Vector3d(0, across - way.y(), up);
+    return soles.clearance(soles.pairs()[0], placed, 0.1);
+  };
+  constexpr double kWidth = 0.063;  // of a sole [m]
+  EXPECT_NEAR(clearance(kWidth + 0.015, 0), 0.015, 1e-6);
+  EXPECT_LT(clearance(kWidth - 0.015, 0), -0.001);
+  EXPECT_GT(clearance(kWidth - 0.015, 0.02), 0.001);  // the foot swings over the other one
+}
+
 }  // namespace
 }  // namespace ayumi

@@ -153,14 +153,14 @@ TEST(WrittenValues, AreMeasuredByLegsRadiansAndTheWeight) {
   const auto& force = *find(values, "/keyframes/1", "f_z");
   const double weight = hoap1().mass() * kGravity;
   EXPECT_NEAR(force.suspicion(hoap1()), std::abs(70 - weight) / weight, 1e-12);
-  EXPECT_FALSE(force.has_sign());
+  EXPECT_FALSE(force.has_sign(hoap1()));
   const auto& joint = *find(values, "/keyframes/2", "l_elbow");
   EXPECT_NEAR(joint.suspicion(hoap1()), 0.2, 1e-12);
-  EXPECT_TRUE(joint.has_sign());
+  EXPECT_TRUE(joint.has_sign(hoap1()));
   const auto& foot = *find(values, "/phases/1", "the left foot's x");
   EXPECT_GT(foot.suspicion(hoap1()), 0.02 / 0.3);
   EXPECT_LT(foot.suspicion(hoap1()), 0.02 / 0.1);
-  EXPECT_FALSE(find(values, "/world/friction", "the friction of the ground")->has_sign());
+  EXPECT_FALSE(find(values, "/world/friction", "the friction of the ground")->has_sign(hoap1()));
 }
 
 }  // namespace

@@ -14,7 +14,7 @@
 #include "ayumi/base/json_pointer.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/mistake_search.hpp"
-#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/check/raised_feet.hpp"
 #include "ayumi/motion/pattern_context.hpp"
 #include "ayumi/plan/foot_plan.hpp"
 
@@ -81,6 +81,7 @@ class Suspicions {
     const bool swings = std::any_of(pattern_.phases.begin(), pattern_.phases.end(),
                                     [](const Phase& phase) { return phase.swing.has_value(); });
     if (feet_ && swings) missing_swings();
+    if (feet_) heights_of_feet();
     small_angles();
     friction();
     pushes();
@@ -97,6 +98,7 @@ class Suspicions {
       crossings();
       zmp_keys();
       missing_swings();
+      heights_of_feet();
       lifted_keys();
     }
     leg_keys();
@@ -241,14 +243,7 @@ class Suspicions {
 
   // The largest possible COG height: the height at home, plus the length by which the bent legs can
   // still be stretched.
-  double highest_cog(double home) const {
-    RobotData data(model_);
-    update_positions(model_, model_.rest_state(), data);
-    const Vector3d hip =
-        data.pose(model_.dofs()[model_.leg(Side::left).front()].body).translation();
-    const double reach = (sole_pose(model_, data, Side::left).translation() - hip).norm();
-    return home + leg_length(model_) - reach;
-  }
+  double highest_cog(double home) const { return home + leg_length(model_) - home_reach(model_); }
 
   void cog_heights() {
     const double home = default_cog_height(model_, {}), most = highest_cog(home);
@@ -386,6 +381,13 @@ class Suspicions {
                                  " foot alone, but the " + name_of(idle) +
                                  " foot stays on the ground; its swing may be missing"});
     }
+    say(found);
+  }
+
+  void heights_of_feet() {
+    std::vector<Mistake> found;
+    for (const RaisedFoot& foot : raised_feet(model_, pattern_, *feet_))
+      found.push_back({foot.place, foot.words});
     say(found);
   }
 

@@ -29,8 +29,9 @@ struct Mistake {
 std::vector<Mistake> impossible_values(const RobotModel& model, const Pattern& pattern);
 
 /// Mistakes that a consistent pattern may contain: a single support without a swing although the
-/// others have one, angles of a few degrees that look like radians, a friction coefficient that no
-/// real ground has, pushes that no robot survives, and disturbances after the end.
+/// others have one, feet that do not stand on the ground, angles of a few degrees that look like
+/// radians, a friction coefficient that no real ground has, pushes that no robot survives, and
+/// disturbances after the end.
 std::vector<Mistake> doubtful_values(const RobotModel& model, const Pattern& pattern);
 
 /// The changes that would make the pattern consistent or, if there is none, its impossible values.

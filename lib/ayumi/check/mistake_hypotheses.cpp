@@ -8,6 +8,7 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <tuple>
 
 #include "ayumi/author/edit/edit.hpp"
@@ -17,6 +18,8 @@
 #include "ayumi/base/json_pointer.hpp"
 #include "ayumi/base/number_slips.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/check/block_hypotheses.hpp"
+#include "ayumi/check/raised_feet.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/elementary.hpp"
 #include "ayumi/math/quintic.hpp"
@@ -104,6 +107,10 @@ constexpr double kRestReach = 2;
 // Number of steps of a second in which rests are named. Chosen: an author writes tenths of a
 // second.
 constexpr double kRestsPerSecond = 10;
+// The size that is given to a change of a time with which a keyframe and the end of a phase are at
+// the same time. Definition: it comes before the changes of key_times() that nothing else speaks
+// for, which have sizes from -2 on.
+constexpr double kCoincidence = -3;
 // Number of bisection steps in the search for a time. Chosen: an interval of a second becomes a
 // microsecond, and times are written in milliseconds.
 constexpr int kHalvings = 20;
@@ -147,7 +154,8 @@ class Hypotheses::Maker {
   }
 
   std::vector<Hypothesis> times() const {
-    std::vector<Hypothesis> made;
+    std::vector<Hypothesis> made = block_hypotheses(pattern_);
+    ground_heights(made);
     turns(made);
     level_feet(made);
     stoops(made);
@@ -159,7 +167,8 @@ class Hypotheses::Maker {
   }
 
   std::vector<Hypothesis> irregular() const {
-    std::vector<Hypothesis> made;
+    std::vector<Hypothesis> made = block_hypotheses(pattern_);
+    ground_heights(made);
     phase_times(made);
     foothold_exchanges(made);
     zmp_sides(made);
@@ -169,6 +178,7 @@ class Hypotheses::Maker {
     swings(made);
     double_supports(made);
     leg_keys(made);
+    unlike_sides(made);
     interpolations(made);
     rests(made);
     level_feet(made);
@@ -179,12 +189,14 @@ class Hypotheses::Maker {
   std::vector<Hypothesis> exchanges() const {
     std::vector<Hypothesis> made;
     footholds(made);
+    swapped_axes(made);
     zmp_sides(made);
     zmp_keys(made);
     all_zmp_keys(made);
     phase_sides(made);
     starts(made);
     key_sides(made);
+    unlike_sides(made);
     return made;
   }
 
@@ -219,6 +231,8 @@ class Hypotheses::Maker {
   std::vector<Hypothesis> paces() const {
     std::vector<Hypothesis> made;
     cog_height(made);
+    profiles(made);
+    superfluous_keys(made);
     if (pattern_.table || pattern_.correction) return made;
     lower_take_offs(made);
     shorter_flights(made);
@@ -358,16 +372,44 @@ class Hypotheses::Maker {
     return false;
   }
 
+  // Whether a phase ends at this time.
+  bool is_at_end(double t) const {
+    return std::any_of(pattern_.phases.begin(), pattern_.phases.end(), [&](const Phase& phase) {
+      return std::abs(phase.until - t) < kSameTime * phase.until;
+    });
+  }
+
+  // Whether a key belongs to a change of the support: it moves a foot, or puts the ZMP under one.
+  static bool is_of_contact(const Keyframe& key) {
+    return (key.zmp && key.zmp->place != ZmpKey::Place::center) || key.feet[0] || key.feet[1];
+  }
+
+  bool has_key_of_contact(double t) const {
+    return std::any_of(pattern_.keyframes.begin(), pattern_.keyframes.end(),
+                       [&](const Keyframe& key) {
+                         return is_of_contact(key) && std::abs(key.t - t) < kSameTime * t;
+                       });
+  }
+
+  // Number of such keys that are at the end of a phase of this pattern.
+  static long keys_at_ends(const Pattern& pattern) {
+    return std::count_if(
+        pattern.keyframes.begin(), pattern.keyframes.end(), [&](const Keyframe& key) {
+          return is_of_contact(key) &&
+                 std::any_of(pattern.phases.begin(), pattern.phases.end(), [&](const Phase& phase) {
+                   return std::abs(phase.until - key.t) < kSameTime * phase.until;
+                 });
+        });
+  }
+
   // A key of the ZMP or of a foot at the end of a phase belongs to the change of the support.
   bool belongs_to_phase(const Keyframe& key) const {
-    return (key.zmp || key.feet[0] || key.feet[1]) &&
-           std::any_of(pattern_.phases.begin(), pattern_.phases.end(), [&](const Phase& phase) {
-             return std::abs(phase.until - key.t) < kSameTime * phase.until;
-           });
+    return (key.zmp || key.feet[0] || key.feet[1]) && is_at_end(key.t);
   }
 
   void key_times(std::vector<Hypothesis>& made) const {
     const auto& keys = pattern_.keyframes;
+    repeated_segments(made);
     for (size_t i = 0; i < keys.size(); ++i) {
       if (!reaches_key(i) || is_repeated_key(i)) continue;
       const double before = i > 0 ? keys[i - 1].t : 0;
@@ -388,6 +430,13 @@ class Hypotheses::Maker {
       for (const double t : number_slips(keys[i].t))
         if (std::min(t - before, after - t) >= std::min(in, out))
           add(Rank::slip, t, "", too_early ? -2 : 0);
+      if (is_of_contact(keys[i]) && !is_at_end(keys[i].t))
+        for (const Phase& phase : pattern_.phases)
+          if (!has_key_of_contact(phase.until))
+            add(Rank::slip, phase.until,
+                ", where no phase ends, and " + seconds(phase.until) +
+                    ", where a phase ends, has no such key",
+                kCoincidence);
       if (i == 0 || (!too_early && belongs_to_phase(keys[i]))) continue;
       const std::string lasts = ", so the segment before it lasts " + seconds(in) +
                                 " and the one after it " + seconds(out);
@@ -401,6 +450,33 @@ class Hypotheses::Maker {
           add(Rank::amount, std::round(1000 * t) / 1000, lasts);
         const double back = in < out ? keys[i].t - share * in : keys[i].t + share * out;
         add(Rank::amount, std::round(1000 * back) / 1000, lasts);
+      }
+    }
+  }
+
+  // The time since the previous key, which is the same in all rounds of a block, may be wrong by a
+  // digit. All later keys move with it.
+  void repeated_segments(std::vector<Hypothesis>& made) const {
+    const auto& keys = pattern_.keyframes;
+    std::set<std::string> seen;
+    double longest = 0;
+    for (size_t i = 1; i < keys.size(); ++i) longest = std::max(longest, keys[i].t - keys[i - 1].t);
+    for (size_t i = 1; i < keys.size(); ++i) {
+      if (!is_repeated_key(i) || !seen.insert(keys[i].pointer).second) continue;
+      const double lasts = keys[i].t - keys[i - 1].t;
+      for (const double meant : number_slips(lasts)) {
+        if (meant < kShortestPhase || meant > longest) continue;
+        made.push_back(
+            {Rank::slip,
+             {key_place(i), "the keyframe is " + seconds(lasts) + " after the one before it",
+              "with " + seconds(meant)},
+             [pointer = keys[i].pointer, by = meant - lasts](Pattern& p) {
+               double later = 0;
+               for (Keyframe& key : p.keyframes) {
+                 if (key.pointer == pointer) later += by;
+                 key.t += later;
+               }
+             }});
       }
     }
   }
@@ -515,6 +591,8 @@ class Hypotheses::Maker {
       const double after =
           i + 1 < pattern_.phases.size() ? pattern_.phases[i + 1].until : until * 1e3;
       const std::optional<double> usual = usual_duration(i);
+      ends_at_keys(i, after, usual, made);
+      durations(i, made);
       if (usual && std::abs(until - begin - *usual) < kUsualShare * *usual) continue;
       std::vector<double> meant;
       if (usual) meant.push_back(std::round(1000 * (begin + *usual)) / 1000);
@@ -545,6 +623,57 @@ class Hypotheses::Maker {
              for (Keyframe& key : p.keyframes)
                if (key.t >= until - 1e-9) key.t += later;
            }});
+    }
+  }
+
+  // The end of a phase that has no key, but should perhaps be at a key of the ZMP or of a foot that
+  // is at the end of no phase.
+  void ends_at_keys(size_t phase, double after, std::optional<double> usual,
+                    std::vector<Hypothesis>& made) const {
+    const double begin = begin_of(phase), until = pattern_.phases[phase].until;
+    if (phase + 1 == pattern_.phases.size() || has_key_of_contact(until)) return;
+    // The keys of the COG height belong to the ends of a flight.
+    const bool flight = pattern_.phases[phase].support == Support::none ||
+                        pattern_.phases[phase + 1].support == Support::none;
+    for (size_t k = 0; k < pattern_.keyframes.size(); ++k) {
+      const Keyframe& key = pattern_.keyframes[k];
+      if (key.t <= begin + kShortestPhase || key.t >= after || is_at_end(key.t) ||
+          !(is_of_contact(key) || (flight && key.cog_height)))
+        continue;
+      // An end with which the phase is as long as similar ones is tried in any case.
+      if (usual && std::abs(key.t - begin - *usual) < kSameTime * key.t) continue;
+      made.push_back({Rank::slip,
+                      {phase_place(phase),
+                       "the phase ends at " + seconds(until) + ", where no keyframe is, and " +
+                           key_place(k) + " is at " + seconds(key.t) + ", where no phase ends",
+                       "with an end at " + seconds(key.t)},
+                      [phase, t = key.t](Pattern& p) { p.phases[phase].until = t; },
+                      kCoincidence});
+    }
+  }
+
+  // A wrong duration moves all later phases, but not the keyframes, so that these no longer fit.
+  void durations(size_t phase, std::vector<Hypothesis>& made) const {
+    const double until = pattern_.phases[phase].until, lasts = until - begin_of(phase);
+    if (is_repeated(pattern_, pattern_.phases[phase].pointer)) return;
+    for (const double meant : number_slips(lasts)) {
+      if (meant < kShortestPhase) continue;
+      const Mend mend = [phase, later = meant - lasts](Pattern& p) {
+        for (size_t k = phase; k < p.phases.size(); ++k) p.phases[k].until += later;
+      };
+      Pattern mended = pattern_;
+      mend(mended);
+      const long more = keys_at_ends(mended) - keys_at_ends(pattern_);
+      if (more <= 0) continue;
+      made.push_back({Rank::slip,
+                      {phase_place(phase),
+                       "the phase lasts " + seconds(lasts) +
+                           ", and keyframes do not fit the ends of the phases",
+                       "with a duration of " + seconds(meant) + " (then " +
+                           text::counted(static_cast<size_t>(more), "more keyframe") +
+                           (more == 1 ? " is" : " are") + " at the end of a phase)"},
+                      mend,
+                      kCoincidence - static_cast<double>(more)});
     }
   }
 
@@ -673,7 +802,43 @@ class Hypotheses::Maker {
            [wrong, meant](Pattern& p) {
              for (const size_t k : wrong) p.keyframes[k].zmp->place = meant;
            }});
+      if (!has_zmp_key(begin_of(i), phase.until)) missing_zmp_keys(i, wrong.front(), made);
     }
+  }
+
+  // Whether the ZMP has a key between these times, or at one of them.
+  bool has_zmp_key(double begin, double end) const {
+    return std::any_of(pattern_.keyframes.begin(), pattern_.keyframes.end(),
+                       [&](const Keyframe& key) {
+                         return key.zmp && key.t >= begin - 1e-9 && key.t <= end + 1e-9;
+                       });
+  }
+
+  // The ZMP has no key while the robot stands on one foot, so the keys of the phases before and
+  // after lead it. Tries keys of its own at both ends of the phase.
+  void missing_zmp_keys(size_t phase, size_t wrong, std::vector<Hypothesis>& made) const {
+    const Support support = pattern_.phases[phase].support;
+    const double begin = begin_of(phase), until = pattern_.phases[phase].until;
+    const std::string foot = name_of(stance_of(support));
+    made.push_back({Rank::exchange,
+                    {phase_place(phase),
+                     "the robot stands on the " + foot + " foot from " + seconds(begin) + " to " +
+                         seconds(until) + ", but no keyframe puts the ZMP there; " +
+                         key_place(wrong) + " puts it " + zmp_words(wrong),
+                     "with \"zmp\": \"" + foot + "\" in keyframes at these two times"},
+                    [begin, until, place = place_under(support)](Pattern& p) {
+                      for (const double t : {begin, until}) {
+                        const auto after =
+                            std::find_if(p.keyframes.begin(), p.keyframes.end(),
+                                         [&](const Keyframe& key) { return key.t > t - 1e-9; });
+                        Keyframe added;
+                        added.t = t;
+                        const bool is_there =
+                            after != p.keyframes.end() && std::abs(after->t - t) < 1e-9;
+                        Keyframe& key = is_there ? *after : *p.keyframes.insert(after, added);
+                        key.zmp = ZmpKey{place};
+                      }
+                    }});
   }
 
   /// Total distance between the successive footholds of each foot [m].
@@ -822,6 +987,34 @@ class Hypotheses::Maker {
                         std::swap(p.phases[phase].swing->to, p.phases[k].swing->to);
                       }});
     }
+  }
+
+  // Two numbers in the wrong order: x forward and y to the left.
+  void swapped_axes(std::vector<Hypothesis>& made) const {
+    const auto add = [&](const std::string& place, const std::string& words,
+                         const Eigen::Vector3d& at,
+                         const std::function<Eigen::Vector3d&(Pattern&)>& in) {
+      if (std::abs(at.x() - at.y()) < kLeastMistake * leg_length(model_)) return;
+      made.push_back({Rank::exchange,
+                      {place,
+                       words + " is at x = " + text::brief(at.x()) + " m and y = " +
+                           text::brief(at.y()) + " m; x is forward, and y is to the left",
+                       "with the two numbers exchanged"},
+                      [in](Pattern& p) { std::swap(in(p).x(), in(p).y()); }});
+      made.back().only_if_enough = true;
+    };
+    for (size_t i = 0; i < pattern_.phases.size(); ++i)
+      if (has_place(i) && reaches(i))
+        add(phase_place(i), std::string("the foothold of the ") + name_of(foot_of(i)) + " foot",
+            pattern_.phases[i].swing->to.position,
+            [i](Pattern& p) -> Eigen::Vector3d& { return p.phases[i].swing->to.position; });
+    for (size_t i = 0; i < pattern_.keyframes.size(); ++i)
+      for (const Side side : {Side::left, Side::right})
+        if (const auto s = static_cast<size_t>(index(side));
+            pattern_.keyframes[i].feet[s] && reaches_key(i))
+          add(key_place(i), std::string("the ") + name_of(side) + " foot",
+              pattern_.keyframes[i].feet[s]->position,
+              [i, s](Pattern& p) -> Eigen::Vector3d& { return p.keyframes[i].feet[s]->position; });
   }
 
   // Tries another unit for a whole foothold or foot key.
@@ -1341,6 +1534,12 @@ class Hypotheses::Maker {
               std::string("with the ") + name_of(other(side)) + " foot in its place"},
              [i, s, o](Pattern& p) { std::swap(p.keyframes[i].feet[s], p.keyframes[i].feet[o]); }});
       }
+      if (key.feet[0] && key.feet[1])
+        made.push_back(
+            {Rank::exchange,
+             {key_place(i), "the left and the right foot were perhaps exchanged",
+              "with the two exchanged"},
+             [i](Pattern& p) { std::swap(p.keyframes[i].feet[0], p.keyframes[i].feet[1]); }});
       if (!map || key.joints.empty()) continue;
       // Whether no other key moves the joints of this key.
       const bool is_alone = std::none_of(
@@ -1368,6 +1567,65 @@ class Hypotheses::Maker {
              p.keyframes[i].joints = joints;
            }});
     }
+  }
+
+  // Where most joints of the two sides are mirror images of each other, one that is not may be
+  // wrong. Tries the mirror image of its partner, for each of the two.
+  void unlike_sides(std::vector<Hypothesis>& made) const {
+    std::optional<MirrorMap> map;
+    try {
+      map = mirror_map(model_);
+    } catch (const Error&) {  // the robot has no mirror image
+      return;
+    }
+    using Joints = std::map<std::string, double>;
+    const auto look = [&](const std::string& place, const Joints& joints,
+                          const std::function<Joints&(Pattern&)>& in) {
+      struct Pair {
+        std::string wrong, partner;
+        double angle = 0, meant = 0;
+      };
+      std::vector<Pair> unlike;
+      size_t alike = 0;
+      for (const auto& [joint, angle] : joints) {
+        const int dof = model_.find_dof(joint);
+        if (dof < 0) continue;
+        const auto d = static_cast<size_t>(dof);
+        const std::string partner = model_.dofs()[static_cast<size_t>(map->dof[d])].name;
+        const auto found = joints.find(partner);
+        if (partner == joint || found == joints.end()) continue;
+        const double meant = map->sign[d] * found->second;
+        if (std::abs(meant - angle) < kNoAngle)
+          ++alike;
+        else
+          unlike.push_back({joint, partner, angle, meant});
+      }
+      // Both joints of a pair are unlike.
+      if (unlike.size() != 2 || alike < unlike.size()) return;
+      for (const Pair& pair : unlike)
+        made.push_back({Rank::exchange,
+                        {place,
+                         pair.wrong + " is " + this->angle(pair.angle) + ", and " + pair.partner +
+                             " of the other side is no mirror image of it, as all other joints are",
+                         "with " + this->angle(pair.meant)},
+                        [in, pair](Pattern& p) { in(p).at(pair.wrong) = pair.meant; }});
+    };
+    for (const auto& [name, joints] : pattern_.postures)
+      look("/postures/" + json_pointer_token(name), joints,
+           [name = name](Pattern& p) -> Joints& { return p.postures.at(name); });
+    for (size_t i = 0; i < pattern_.keyframes.size(); ++i)
+      if (reaches_key(i))
+        look(key_place(i), pattern_.keyframes[i].joints,
+             [i](Pattern& p) -> Joints& { return p.keyframes[i].joints; });
+  }
+
+  // ---- the ground
+
+  // Feet that stand above the ground or in it. Tries the height of the ground.
+  void ground_heights(std::vector<Hypothesis>& made) const {
+    if (!feet_) return;
+    for (const RaisedFoot& foot : raised_feet(model_, pattern_, *feet_))
+      made.push_back({Rank::geometry, {foot.place, foot.words, foot.instead}, foot.mend});
   }
 
   // ---- missing or superfluous parts
@@ -1470,6 +1728,61 @@ class Hypotheses::Maker {
       }
   }
 
+  // Keys of one quantity that contradict the others: f_z follows from the COG height, the ZMP from
+  // the COG, and the COG in a flight from its ends. Tries the pattern without these keys.
+  void superfluous_keys(std::vector<Hypothesis>& made) const {
+    const auto& keys = pattern_.keyframes;
+    const auto first = [&](const auto& has) {
+      return static_cast<size_t>(std::find_if(keys.begin(), keys.end(), has) - keys.begin());
+    };
+    const auto add = [&](size_t key, const std::string& written, const std::string& instead,
+                         Mend mend) {
+      // Any wrong number is harmless if its key is left out. So this is only named if no other
+      // number in its place is enough, and before any other pace.
+      made.push_back({Rank::pace, {key_place(key), written, instead}, std::move(mend), -1});
+      made.back().only_if_enough = true;
+    };
+    if (const size_t k = first([](const Keyframe& key) { return key.fz.has_value(); });
+        k < keys.size())
+      add(k,
+          "f_z is " + text::brief(*keys[k].fz) +
+              " N, but the force follows from the weight and from the movement of the COG",
+          "without keys of f_z", [](Pattern& p) {
+            for (Keyframe& key : p.keyframes) key.fz.reset();
+          });
+    const size_t cog = first([](const Keyframe& key) { return key.cog_x || key.cog_y; });
+    const size_t zmp = first([](const Keyframe& key) { return key.zmp.has_value(); });
+    if (cog < keys.size() && zmp < keys.size()) {
+      const std::string both = "both the COG (" + key_place(cog) + ") and the ZMP (" +
+                               key_place(zmp) +
+                               ") have keys, but one of them follows from the other";
+      add(zmp, both, "without keys of the ZMP", [](Pattern& p) {
+        for (Keyframe& key : p.keyframes) key.zmp.reset();
+      });
+      add(cog, both, "without keys of the COG's x and y", [](Pattern& p) {
+        for (Keyframe& key : p.keyframes) {
+          key.cog_x.reset();
+          key.cog_y.reset();
+        }
+      });
+    }
+    const auto is_inside = [&](const Keyframe& key) {
+      return (key.cog_x || key.cog_y || key.cog_height) && flies(key.t) && !is_at_end(key.t);
+    };
+    if (const size_t k = first(is_inside); k < keys.size())
+      add(k,
+          "the COG has a key at " + seconds(keys[k].t) +
+              ", inside a flight, where it can only follow its parabola",
+          "without keys of the COG inside the flight", [this, is_inside](Pattern& p) {
+            for (Keyframe& key : p.keyframes)
+              if (is_inside(key)) {
+                key.cog_x.reset();
+                key.cog_y.reset();
+                key.cog_height.reset();
+              }
+          });
+  }
+
   void interpolations(std::vector<Hypothesis>& made) const {
     const auto jumps = [](Interpolation i) {
       return i == Interpolation::hold || i == Interpolation::linear;
@@ -1570,7 +1883,7 @@ class Hypotheses::Maker {
       if (!off || !reaches(i - 1)) continue;
       const double highest = std::max(*pattern_.keyframes[keys[*off]].cog_height,
                                       *pattern_.keyframes[keys[*off + 1]].cog_height);
-      if (leg_reach(highest) < kStraightTakeOff) continue;
+      if (leg_share(highest) < kStraightTakeOff) continue;
       if (!first) first = *off;
       lower.insert(lower.end(), {keys[*off], keys[*off + 1]});
     }
@@ -1579,7 +1892,7 @@ class Hypotheses::Maker {
     const double leaves = *pattern_.keyframes[k].cog_height,
                  lands = *pattern_.keyframes[keys[*first + 1]].cog_height;
     const bool off = leaves >= lands;  // the end at which the legs are straighter
-    const double bend = 2 * elementary::acos(std::min(1.0, leg_reach(std::max(leaves, lands)))) *
+    const double bend = 2 * elementary::acos(std::min(1.0, leg_share(std::max(leaves, lands)))) *
                         180 / std::numbers::pi;
     for (const double share : kLowerTakeOffs) {
       const double by = std::round(1e3 * share * leg_length(model_)) / 1e3;
@@ -1603,13 +1916,8 @@ class Hypotheses::Maker {
 
   // Distance between hip and sole in the home posture, with the COG at this height, as a share of
   // the straight leg.
-  double leg_reach(double cog_height) const {
-    RobotData data(model_);
-    update_positions(model_, model_.rest_state(), data);
-    const Eigen::Vector3d hip =
-        data.pose(model_.dofs()[model_.leg(Side::left).front()].body).translation();
-    const double reach = (sole_pose(model_, data, Side::left).translation() - hip).norm();
-    return (reach + cog_height - default_cog_height(model_, {})) / leg_length(model_);
+  double leg_share(double cog_height) const {
+    return (home_reach(model_) + cog_height - default_cog_height(model_, {})) / leg_length(model_);
   }
 
   // If the ZMP still moves shortly before the end of the motion, or moves at once at its beginning,
@@ -1680,6 +1988,21 @@ class Hypotheses::Maker {
             for (Disturbance& disturbance : p.scenario) disturbance.at += more;
           });
       break;
+    }
+  }
+
+  // A pattern without a profile has the first one of the robot, which may be too weak.
+  void profiles(std::vector<Hypothesis>& made) const {
+    if (!pattern_.profile.empty()) return;
+    const std::string& usual = model_.limits().name;
+    for (const std::string& name : model_.profile_names()) {
+      if (name == usual) continue;
+      made.push_back(
+          {Rank::pace,
+           {"/profile", "the pattern names no profile, so the motors are those of profile " + usual,
+            "with \"profile\": \"" + name + "\""},
+           [name](Pattern& p) { p.profile = name; }});
+      made.back().only_if_enough = true;
     }
   }
 

@@ -214,7 +214,7 @@ class Search {
     std::vector<Hypothesis> signs, tenths;
     for (size_t i = 0; i < suspects.size(); ++i) {
       if (without[i].errors == 0) continue;
-      if (suspects[i].has_sign() && signs.size() < kTriedSigns)
+      if (suspects[i].has_sign(model_) && signs.size() < kTriedSigns)
         signs.push_back(sign_of(suspects[i], suspects[i].elsewhere()));
       if (suspects[i].suspicion(model_) > kGrossSuspicion) tenths.push_back(tenth_of(suspects[i]));
     }
@@ -303,7 +303,7 @@ class Search {
     // value is usual.
     const bool other_sign =
         limit / number.value < kNoShare && std::abs(number.value) < value.unit(model_);
-    if (value.has_sign())
+    if (value.has_sign(model_))
       slips.push_back(sign_of(value, ", or with values " + range,
                               value.across ? Rank::slip
                               : other_sign ? Rank::exchange

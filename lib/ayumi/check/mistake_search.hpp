@@ -24,8 +24,8 @@ struct Explanation {
 };
 
 /// Largest number of versions of the pattern that are sampled and checked in all rounds together.
-/// Chosen: the planted mistakes of tests/check take 1 to 116 trials; a trial of a walk takes 20 ms
-/// of processor time on a robot of primitive shapes.
+/// Chosen: the longest search of tests/check takes between 160 and 300 trials; a trial of a walk
+/// takes 20 ms of processor time on a robot of primitive shapes.
 inline constexpr int kMostTrials = 300;
 
 struct Explanations {

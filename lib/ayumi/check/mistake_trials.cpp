@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <optional>
 
 #include "ayumi/author/generate/pattern_builder.hpp"
 #include "ayumi/base/error.hpp"
@@ -61,16 +62,23 @@ bool needs_servo_period(FindingKind kind) {
 
 Trials::Trials(const RobotModel& model, const Pattern& pattern, const CheckOptions& options,
                const Progress& progress, int most)
-    : model_(model), options_(options), progress_(progress), most_(most) {
+    : model_(model),
+      options_(options),
+      profile_(pattern.profile),
+      progress_(progress),
+      most_(most) {
   options_.threads = 1;
   threads_ = options.threads;
   const double step = std::min(pattern.duration() / kTrialSamples, kLongestStep);
   const double period = model.description().servo_period;
   ticks_ = static_cast<int>(std::max(1.0, std::floor(step / period)));
-  quick_cost_ = static_cast<int>(
-      std::max(1.0, std::floor(pattern.duration() / (ticks_ * period * kTrialSamples))));
   for (const Side side : {Side::left, Side::right})
-    if (model.leg(side).size() < kWholeLeg) quick_cost_ = std::max(quick_cost_, kLackingCost);
+    if (model.leg(side).size() < kWholeLeg) leg_cost_ = kLackingCost;
+}
+
+int Trials::quick_cost(const Pattern& pattern) const {
+  const double samples = pattern.duration() / (ticks_ * model_.description().servo_period);
+  return std::max(leg_cost_, static_cast<int>(std::floor(samples / kTrialSamples)));
 }
 
 TrialOutcome Trials::exactly(Pattern pattern, const Mend& mend) const {
@@ -87,6 +95,7 @@ TrialOutcome Trials::of(const Pattern& pattern, bool exact) const {
   try {
     CheckOptions options = options_;
     options.friction = pattern.world.friction;
+    if (pattern.profile != profile_) options.profile = pattern.profile;
     const ConsistencyReport report =
         check_consistency(model_, sample(model_, pattern, {.dt = dt, .threads = 1}), options);
     outcome.errors = outcome.findings = 0;
@@ -108,27 +117,31 @@ TrialOutcome Trials::of(const Pattern& pattern, bool exact) const {
 
 std::vector<TrialOutcome> Trials::after(const Pattern& pattern, const std::vector<Mend>& mends) {
   std::vector<TrialOutcome> outcomes(mends.size());
-  const int cost = quick_cost_ * (exact_ ? ticks_ : 1);
-  const size_t tried = std::min(mends.size(), static_cast<size_t>((most_ - made_) / cost));
+  std::vector<std::optional<Pattern>>
+      mended;  // without a pattern that cannot be mended in this way
+  size_t tried = 0;
+  for (; tried < mends.size(); ++tried) {
+    mended.emplace_back(pattern);
+    try {
+      mends[tried](*mended.back());
+    } catch (const Error&) {
+      mended.back().reset();
+    }
+    // A trial takes as long as the motion that is tried.
+    const double cost = static_cast<double>(quick_cost(mended.back() ? *mended.back() : pattern)) *
+                        (exact_ ? ticks_ : 1);
+    if (made_ + cost > most_) break;
+    made_ += static_cast<int>(cost);
+  }
   if (tried < mends.size()) ended_ = true;
-  made_ += cost * static_cast<int>(tried);
   for (size_t begin = 0; begin < tried; begin += kTrialsBetweenReports) {
     report(progress_, {"look for the cause", -1, ""});  // may stop the search
     std::atomic<bool> stop = false;
-    in_parallel(std::min(kTrialsBetweenReports, tried - begin), threads_, stop,
-                [&](size_t i) { outcomes[begin + i] = outcome_after(pattern, mends[begin + i]); });
+    in_parallel(std::min(kTrialsBetweenReports, tried - begin), threads_, stop, [&](size_t i) {
+      if (mended[begin + i]) outcomes[begin + i] = of(*mended[begin + i]);
+    });
   }
   return outcomes;
-}
-
-TrialOutcome Trials::outcome_after(const Pattern& pattern, const Mend& mend) const {
-  Pattern mended = pattern;
-  try {
-    mend(mended);
-  } catch (const Error&) {
-    return {};
-  }
-  return of(mended);
 }
 
 }  // namespace ayumi

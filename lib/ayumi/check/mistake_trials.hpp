@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "ayumi/base/progress.hpp"
@@ -79,14 +80,16 @@ class Trials {
   int made() const { return made_; }
 
  private:
-  TrialOutcome outcome_after(const Pattern& pattern, const Mend& mend) const;
+  /// Number of trials as which a quick trial of a pattern counts.
+  int quick_cost(const Pattern& pattern) const;
 
   const RobotModel& model_;
   CheckOptions options_;
+  std::string profile_;  ///< the profile that the pattern names
   const Progress& progress_;
   int threads_ = 0, most_ = 0;
-  int ticks_ = 1;       ///< ticks of the servo in one time step of a quick trial
-  int quick_cost_ = 1;  ///< number of trials as which a quick trial counts
+  int ticks_ = 1;     ///< ticks of the servo in one time step of a quick trial
+  int leg_cost_ = 1;  ///< number of trials as which a trial counts because of short legs
   int made_ = 0;
   bool ended_ = false, exact_ = false;
 };

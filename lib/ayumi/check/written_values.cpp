@@ -24,6 +24,9 @@ namespace {
 // Two numbers whose difference is smaller than this count as equal, in any unit. Chosen: the
 // conversion of degrees and the rounding of limits cause smaller differences.
 constexpr double kSame = 1e-6;
+// A value below this share of its unit has no sign that could be wrong: it is nearly in the middle.
+// Chosen: 5 mm for a leg of 0.25 m, 1 deg.
+constexpr double kLeastSigned = 0.02;
 
 using In = std::function<double&(Pattern&)>;
 
@@ -59,6 +62,7 @@ class Reader {
       start();
       swings();
       keyed_feet();
+      both_feet();
       cog_and_zmp();
     }
     trunk_and_force();
@@ -242,6 +246,43 @@ class Reader {
     }
   }
 
+  // Both feet of a jump usually move alike, and an author copies the number of one foot to the
+  // other. Adds each number that both feet have in the same keyframe as one value.
+  void both_feet() {
+    for (const int axis : {0, 2}) {
+      NumberTrack track{.words = coordinate("the feet", axis),
+                        .start = feet_->pose(Side::left, 0).translation()[axis]};
+      std::vector<In> of_right;
+      each_key([&](size_t i, const Keyframe& key) {
+        if (!key.feet[0] || !key.feet[1] ||
+            std::abs(key.feet[0]->position[axis] - key.feet[1]->position[axis]) > kSame)
+          return;
+        const auto in = [i, axis](size_t s) {
+          return [i, axis, s](Pattern& p) -> double& {
+            return p.keyframes[i].feet[s]->position[axis];
+          };
+        };
+        track.numbers.push_back({key.t, key_place(i), in(0)});
+        of_right.push_back(in(1));
+      });
+      const size_t before = found_.size();
+      add(track);
+      // The right foot has the same number in the same place.
+      for (size_t v = before; v < found_.size(); ++v) {
+        std::vector<WrittenNumber>& numbers = found_[v].numbers;
+        const size_t n = numbers.size();
+        for (size_t i = 0; i < n; ++i)
+          for (size_t k = 0; k < track.numbers.size(); ++k)
+            if (&track.numbers[k].in(copy_) == &numbers[i].in(copy_)) {
+              WrittenNumber right = numbers[i];
+              right.in = of_right[k];
+              numbers.push_back(std::move(right));
+              break;
+            }
+      }
+    }
+  }
+
   void cog_and_zmp() {
     const Eigen::Vector3d middle = feet_->support_center(0);
     NumberTrack x{.words = "the COG's x", .start = middle.x()},
@@ -359,9 +400,9 @@ double WrittenValue::suspicion(const RobotModel& model) const {
   return most / unit(model);
 }
 
-bool WrittenValue::has_sign() const {
+bool WrittenValue::has_sign(const RobotModel& model) const {
   return (quantity == Quantity::length || quantity == Quantity::angle) &&
-         numbers.front().value != 0;
+         std::abs(numbers.front().value) > kLeastSigned * unit(model);
 }
 
 std::string WrittenValue::text(const Pattern& pattern, double value) const {

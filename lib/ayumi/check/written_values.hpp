@@ -39,7 +39,7 @@ struct WrittenValue {
   /// Largest distance of one of its numbers from the neutral value, in these units.
   double suspicion(const RobotModel& model) const;
   /// Whether the same value with the other sign could have been meant.
-  bool has_sign() const;
+  bool has_sign(const RobotModel& model) const;
   /// "0.9 m", "30 deg": `value` as the author of this pattern writes it.
   std::string text(const Pattern& pattern, double value) const;
   /// A text with the places of the other numbers of this value, because a change of the value

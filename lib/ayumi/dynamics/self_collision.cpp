@@ -1,6 +1,8 @@
 #include "ayumi/dynamics/self_collision.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <set>
 
@@ -19,6 +21,23 @@ constexpr int kHousingJoints = 3;
 // Overlap in the home posture that counts as touching [m]. Chosen: above the rounding of the
 // distance, below any real overlap.
 constexpr double kTouchingOverlap = 1e-6;
+
+// Height of the box that stands for a foot without collision shapes, as a share of the height of
+// the foot's joint above the sole. Chosen: 8 mm for DARwIn-OP. A foot that swings over the other
+// one passes at a greater height, and soles that stand on each other overlap.
+constexpr double kSoleHeight = 0.25;
+
+// The box above the outline of a sole, in the frame of its body.
+PlacedShape sole_box(const Sole& sole) {
+  Eigen::AlignedBox2d outline;
+  for (const Eigen::Vector2d& corner : sole.polygon) outline.extend(corner);
+  const double height = kSoleHeight * std::abs((sole.frame.inverse().translation()).z());
+  PlacedShape box;
+  box.shape = Box{{outline.sizes().x(), outline.sizes().y(), height}};
+  box.pose =
+      sole.frame * Eigen::Translation3d(outline.center().x(), outline.center().y(), 0.5 * height);
+  return box;
+}
 
 int joints_between(const RobotModel& model, int a, int b) {
   int steps = 0;
@@ -50,6 +69,14 @@ CollisionModel::CollisionModel(const RobotModel& model, MeshAs mesh_as)
   for (const Link& link : model.links())
     for (const PlacedShape& shape : link.collisions)
       shapes_[link.body].push_back({Collider(shape.shape, mesh_as), link.pose * shape.pose});
+
+  if (model.has_soles())
+    for (const Side side : {Side::left, Side::right}) {
+      const Sole& sole = model.sole(side);
+      if (!shapes_[sole.body].empty()) continue;
+      const PlacedShape box = sole_box(sole);
+      shapes_[sole.body].push_back({Collider(box.shape, mesh_as), box.pose});
+    }
 
   RobotData data(model);
   update_positions(model, model.rest_state(), data);

@@ -8,7 +8,8 @@
 
 namespace ayumi {
 
-/// The collision shapes of a robot, prepared for use, and the pairs of bodies to examine. These
+/// The collision shapes of a robot, prepared for use, and the pairs of bodies to examine. A foot
+/// without collision shapes has a thin box above its sole, because a sole is solid. These
 /// pairs are left out: shapes of one body; parent and child; pairs that the robot says to ignore;
 /// pairs that overlap in the home posture (touching is not overlapping); and pairs up to three
 /// joints apart that are nearer than 5 mm in the home posture (housings of one compound joint, made

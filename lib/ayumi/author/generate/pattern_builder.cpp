@@ -52,11 +52,15 @@ double leg_length(const RobotModel& model) {
   return length + (sole_pose(model, data, Side::left).translation() - from).norm();
 }
 
-double bent_height(const RobotModel& model) {
+double home_reach(const RobotModel& model) {
   RobotData data(model);
   update_positions(model, model.rest_state(), data);
   const Vector3d hip = data.pose(model.dofs()[model.leg(Side::left).front()].body).translation();
-  const double reach = (sole_pose(model, data, Side::left).translation() - hip).norm();
+  return (sole_pose(model, data, Side::left).translation() - hip).norm();
+}
+
+double bent_height(const RobotModel& model) {
+  const double reach = home_reach(model);
   const double leg = leg_length(model);
   if (reach < kStraightLeg * leg) return 0;
   return to_tenth_millimetre(default_cog_height(model, {}) - (reach - kBentLeg * leg));

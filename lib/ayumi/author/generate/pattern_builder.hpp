@@ -16,6 +16,9 @@ void require_range(const char* pattern, const char* name, double value, double l
 /// Sum of the link lengths from hip to sole [m].
 double leg_length(const RobotModel& model);
 
+/// Distance between hip and sole of the left leg in the home posture [m].
+double home_reach(const RobotModel& model);
+
 /// COG height in the home posture, lowered if the legs there are too straight to move a foot or the
 /// COG [m]. It is 0 if the height of home can be kept.
 double bent_height(const RobotModel& model);

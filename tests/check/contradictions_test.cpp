@@ -1,0 +1,301 @@
+// Mistakes that contradict another part of the same pattern: blocks that do not fit each other,
+// times at which only a phase or only a key ends, keys of two quantities of which one follows from
+// the other, feet above the ground, and joints that are no mirror images. The first likely cause
+// names them.
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <regex>
+#include <string>
+
+#include "ayumi/author/generate/generate.hpp"
+#include "ayumi/check/consistency.hpp"
+#include "ayumi/check/likely_mistakes.hpp"
+#include "ayumi/plan/sample.hpp"
+#include "tests/support/robot_motions.hpp"
+
+namespace ayumi::test::contradictions {
+namespace {
+
+using Under = ZmpKey::Place;
+
+const RobotModel& small() { return bundled_robot("hoap1"); }
+const RobotModel& tall() { return bundled_robot("humanoid30"); }
+
+CheckOptions options_of(const Pattern& pattern) {
+  CheckOptions options;
+  options.profile = pattern.profile;
+  options.friction = pattern.world.friction;
+  return options;
+}
+
+bool is_consistent(const RobotModel& robot, const Pattern& pattern) {
+  return check_consistency(robot, sample(robot, pattern, {.dt = robot.description().servo_period}),
+                           options_of(pattern))
+      .consistent;
+}
+
+std::string first_cause(const RobotModel& robot, const Pattern& pattern) {
+  const std::vector<Mistake> found = likely_mistakes(robot, pattern, options_of(pattern));
+  return found.empty() ? "" : found.front().text();
+}
+
+void expect_named(const RobotModel& robot, const Pattern& sound,
+                  const std::function<void(Pattern&)>& plant, const std::string& named) {
+  ASSERT_TRUE(is_consistent(robot, sound)) << named;
+  Pattern pattern = sound;
+  plant(pattern);
+  const std::string first = first_cause(robot, pattern);
+  EXPECT_TRUE(std::regex_search(first, std::regex("^" + named))) << first;
+}
+
+void add_key(Pattern& pattern, double t, Under zmp, const std::string& pointer = "") {
+  pattern.keyframes.emplace_back();
+  pattern.keyframes.back().t = t;
+  pattern.keyframes.back().zmp = ZmpKey{zmp};
+  pattern.keyframes.back().pointer = pointer;
+}
+
+struct Steps {
+  int phase_rounds = 3, key_rounds = 3;
+  double first_swing = 0.48;  // duration of the first swing of a round of the phases [s]
+  double late = 0;            // delay of the keyframes [s]
+};
+
+// A walk whose steps repeat in a block of phases and in a block of keyframes.
+Pattern steps_in_blocks(const Steps& steps) {
+  constexpr double kSwing = 0.48, kBoth = 0.12;
+  Pattern p;
+  p.cog_height = 0.24;
+  double until = 1.2;
+  const auto phase = [&](double lasts, Support support, const std::string& pointer) {
+    until += lasts;
+    Phase added{.until = until, .support = support, .swing = {}, .pointer = pointer};
+    if (support != Support::both)
+      added.swing = Swing{.foot = support == Support::left ? Side::right : Side::left,
+                          .to = {},
+                          .lift = 0.016,
+                          .step = RelativeStep{.forward = pointer == "/phases/2" ? 0 : 0.028}};
+    p.phases.push_back(added);
+  };
+  phase(0, Support::both, "/phases/0");
+  for (int round = 0; round < steps.phase_rounds; ++round) {
+    phase(steps.first_swing, Support::left, "/phases/1/phases/0");
+    phase(kBoth, Support::both, "/phases/1/phases/1");
+    phase(kSwing, Support::right, "/phases/1/phases/2");
+    phase(kBoth, Support::both, "/phases/1/phases/3");
+  }
+  phase(kSwing, Support::left, "/phases/2");
+  phase(1.3, Support::both, "/phases/3");
+  add_key(p, 0, Under::center, "/keyframes/0");
+  add_key(p, 0.7, Under::center, "/keyframes/1");
+  double t = 1.2 + steps.late;
+  for (int round = 0; round < steps.key_rounds; ++round) {
+    add_key(p, t, Under::left, "/keyframes/2/keyframes/0");
+    add_key(p, t += kSwing, Under::left, "/keyframes/2/keyframes/1");
+    add_key(p, t += kBoth, Under::right, "/keyframes/2/keyframes/2");
+    add_key(p, t += kSwing, Under::right, "/keyframes/2/keyframes/3");
+    t += kBoth;
+  }
+  add_key(p, t, Under::left, "/keyframes/3");
+  add_key(p, t += kSwing, Under::left, "/keyframes/4");
+  add_key(p, t + 0.5, Under::center, "/keyframes/5");
+  return p;
+}
+
+TEST(Contradictions, AnotherNumberOfRoundsIsNamed) {
+  expect_named(
+      small(), steps_in_blocks({}), [](Pattern& p) { p = steps_in_blocks({.key_rounds = 2}); },
+      "/keyframes/2: the block of keyframes repeats 2 times, and the block of phases /phases/1 3 "
+      "times; with \"repeat\": 3 here, the pattern is consistent");
+}
+
+TEST(Contradictions, AWrongDurationInABlockIsNamed) {
+  expect_named(
+      small(), steps_in_blocks({}), [](Pattern& p) { p = steps_in_blocks({.first_swing = 0.048}); },
+      "/phases/1/phases/0: the phase lasts 0.048 s; .* with a duration of 0.48 s, the pattern is "
+      "consistent");
+}
+
+TEST(Contradictions, KeyframesThatAreOneRoundLateAreNamed) {
+  expect_named(
+      small(), steps_in_blocks({}), [](Pattern& p) { p = steps_in_blocks({.late = 1.2}); },
+      "/keyframes/2: the first round of the keyframes begins at 2.4 s, and that of the phases at "
+      "1.2 s; .* keyframes 1.2 s earlier, the pattern is consistent");
+}
+
+TEST(Contradictions, MissingKeysOfTheZmpAreNamed) {
+  expect_named(
+      small(), steps_in_blocks({}),
+      [](Pattern& p) {
+        std::erase_if(p.keyframes, [](const Keyframe& key) {
+          return key.pointer == "/keyframes/3" || key.pointer == "/keyframes/4";
+        });
+      },
+      "/phases/2: the robot stands on the left foot from 4.8 s to 5.28 s, but no keyframe puts the "
+      "ZMP there");
+}
+
+// Two steps to the side, with a key of the ZMP at each end of a swing.
+Pattern side_steps() {
+  Pattern p;
+  p.cog_height = 0.238;
+  const auto phase = [&](double until, Support support, double y) {
+    Phase added{.until = until, .support = support, .swing = {}};
+    if (support != Support::both)
+      added.swing = Swing{.foot = support == Support::left ? Side::right : Side::left,
+                          .to = {.position = {0, y, 0}},
+                          .lift = 0.015};
+    p.phases.push_back(added);
+  };
+  phase(1.2, Support::both, 0);
+  phase(1.8, Support::right, 0.049);
+  phase(2.0, Support::both, 0);
+  phase(2.6, Support::left, -0.029);
+  phase(4.0, Support::both, 0);
+  add_key(p, 0.6, Under::center);
+  add_key(p, 1.2, Under::right);
+  add_key(p, 1.8, Under::right);
+  add_key(p, 2.0, Under::left);
+  add_key(p, 2.6, Under::left);
+  add_key(p, 3.2, Under::center);
+  return p;
+}
+
+TEST(Contradictions, AKeyThatIsNotAtTheEndOfItsPhaseIsNamed) {
+  expect_named(
+      small(), side_steps(), [](Pattern& p) { p.keyframes[3].t = 2.5; },
+      "/keyframes/3: t is 2.5 s, .* with t = 2 s, the pattern is consistent");
+}
+
+TEST(Contradictions, ADurationThatMovesAllLaterPhasesIsNamed) {
+  expect_named(
+      small(), side_steps(),
+      [](Pattern& p) {
+        for (size_t i = 1; i < p.phases.size(); ++i) p.phases[i].until -= 0.54;
+      },
+      "/phases/1: the phase lasts 0.06 s, .* with a duration of 0.6 s .* the pattern is "
+      "consistent");
+}
+
+TEST(Contradictions, KeysOfTheZmpBesideThoseOfTheCogAreNamed) {
+  Pattern sway;
+  sway.cog_height = 0.24;
+  sway.phases = {{.until = 5, .swing = {}}};
+  for (const auto& [t, y] : {std::pair(0.5, 0.0), {1.5, 0.02}, {3.5, -0.02}, {4.5, 0.0}}) {
+    sway.keyframes.emplace_back();
+    sway.keyframes.back().t = t;
+    sway.keyframes.back().cog_x = 0.007;
+    sway.keyframes.back().cog_y = y;
+  }
+  expect_named(
+      small(), sway, [](Pattern& p) { p.keyframes[1].zmp = ZmpKey{Under::left}; },
+      "/keyframes/1: both the COG \\(/keyframes/0\\) and the ZMP \\(/keyframes/1\\) have keys, .* "
+      "without keys of the ZMP, the pattern is consistent");
+}
+
+Pattern strong_jump() {
+  Pattern pattern = jump_pattern(small(), jump_defaults(small()));
+  pattern.profile = "hoap1-strong";
+  return pattern;
+}
+
+TEST(Contradictions, AKeyOfTheForceIsNamed) {
+  expect_named(
+      small(), strong_jump(), [](Pattern& p) { p.keyframes.front().fz = 32; },
+      "/keyframes/0: f_z is 32 N, .* without keys of f_z, the pattern is consistent");
+}
+
+TEST(Contradictions, AKeyOfTheCogInsideAFlightIsNamed) {
+  const Pattern jump = strong_jump();
+  double begin = 0;
+  size_t flight = 0;
+  while (jump.phases[flight].support != Support::none) begin = jump.phases[flight++].until;
+  const double middle = 0.5 * (begin + jump.phases[flight].until);
+  expect_named(
+      small(), jump,
+      [&](Pattern& p) {
+        Keyframe apex;
+        apex.t = middle;
+        apex.cog_height = 0.27;
+        const auto after = std::find_if(p.keyframes.begin(), p.keyframes.end(),
+                                        [&](const Keyframe& key) { return key.t > middle; });
+        p.keyframes.insert(after, apex);
+      },
+      "/keyframes/[0-9]+: the COG has a key at .* inside a flight, .* without keys of the COG "
+      "inside the flight, the pattern is consistent");
+}
+
+// A sole in the air in double support is consistent with its plan, but not with the ground.
+TEST(Contradictions, AFootAboveTheGroundIsDoubted) {
+  Pattern pattern = side_steps();
+  EXPECT_TRUE(doubtful_values(small(), pattern).empty());
+  pattern.phases[3].swing->to.position.z() = 0.009;
+  std::vector<Mistake> doubts = doubtful_values(small(), pattern);
+  ASSERT_EQ(doubts.size(), 1u);
+  EXPECT_EQ(doubts.front().text(),
+            "/phases/3: the right foot's z is 0.009 m, but the ground is at 0 m there");
+  pattern.world.blocks = {{.low = {-0.1, -0.1}, .high = {0.1, -0.01}, .height = 0.009}};
+  doubts = doubtful_values(small(), pattern);
+  EXPECT_TRUE(doubts.empty()) << doubts.front().text();
+}
+
+TEST(Contradictions, AKickThatEndsAboveTheGroundIsNamed) {
+  KickParameters low = kick_defaults(small());
+  low.cog_height = 0.238;
+  const Pattern kick = kick_pattern(small(), low);
+  size_t last = 0;
+  for (size_t i = 0; i < kick.keyframes.size(); ++i)
+    if (kick.keyframes[i].feet[1]) last = i;
+  expect_named(
+      small(), kick, [&](Pattern& p) { p.keyframes[last].feet[1]->position.z() = 0.012; },
+      "/keyframes/" + std::to_string(last) +
+          ": the right foot's z is 0.012 m, but the ground is at 0 m there");
+}
+
+TEST(Contradictions, AKickThatStaysInTheAirIsNamed) {
+  KickParameters low = kick_defaults(small());
+  low.cog_height = 0.238;
+  const Pattern kick = kick_pattern(small(), low);
+  size_t last = 0;
+  for (size_t i = 0; i < kick.keyframes.size(); ++i)
+    if (kick.keyframes[i].feet[1]) last = i;
+  expect_named(
+      small(), kick, [&](Pattern& p) { p.keyframes[last].feet[1].reset(); },
+      "/keyframes/[0-9]+: the right foot's z is .* when it begins to carry the robot; .* with a "
+      "key of this foot at its old place at this time, the pattern is consistent");
+}
+
+TEST(Contradictions, FootholdsWithXAndYExchangedAreNamed) {
+  expect_named(
+      small(), side_steps(),
+      [](Pattern& p) {
+        std::swap(p.phases[1].swing->to.position.x(), p.phases[1].swing->to.position.y());
+      },
+      "/phases/1: the foothold of the left foot is at x = 0.049 m and y = 0 m; .* with the two "
+      "numbers exchanged, the pattern is consistent");
+}
+
+TEST(Contradictions, AJointThatIsNoMirrorImageIsNamed) {
+  constexpr double kDegree = EIGEN_PI / 180;
+  Pattern p;
+  p.phases = {{.until = 6, .swing = {}}};
+  for (const double side : {1, -1})
+    for (const auto& [joint, angle] : {std::pair("hip_pitch", -40.0),
+                                       {"knee", 80.0},
+                                       {"ankle_pitch", -40.0},
+                                       {"shoulder_pitch", -30.0}})
+      p.postures["low"][(side > 0 ? "l_" : "r_") + std::string(joint)] = angle * kDegree;
+  for (const auto& [t, posture] : {std::pair(0.5, "home"), {2.5, "low"}, {5.0, "home"}}) {
+    p.keyframes.emplace_back();
+    p.keyframes.back().t = t;
+    p.keyframes.back().posture = posture;
+  }
+  expect_named(
+      tall(), p, [&](Pattern& wrong) { wrong.postures["low"]["l_knee"] = 8 * kDegree; },
+      "/postures/low: l_knee is 8 deg, .* with 80 deg, the pattern is consistent");
+}
+
+}  // namespace
+}  // namespace ayumi::test::contradictions
