@@ -2,8 +2,10 @@
 // is neither.
 
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "tests/cli/program.hpp"
+#include "tests/support/urdf_biped.hpp"
 
 namespace ayumi::test {
 namespace {
@@ -27,6 +29,21 @@ TEST(NewJump, AHeightBeyondEveryProfileIsSaid) {
             std::string::npos)
       << made.out;
   EXPECT_EQ(contents(folder.path() / "j.json").find("\"profile\""), std::string::npos);
+}
+
+// Motors that turn slowly do not jump, and the message says what is in the way of a low jump.
+TEST(NewJump, WhatIsInTheWayOfALowJumpIsSaid) {
+  Folder folder;
+  write(folder / "slow.urdf", UrdfBiped{.speed = 1}.text());
+  const Output made =
+      run_program({"new", "jump", "--robot", "slow.urdf", "-o", "jump.json"}, folder.path());
+  EXPECT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_NE(made.out.find("No jump of 1 mm or more passes the check"), std::string::npos)
+      << made.out;
+  EXPECT_TRUE(std::regex_search(
+      made.out, std::regex("Even a jump of [0-9.]+ mm is refused, with the default stoop and COG "
+                           "height, because of joint_speed of ")))
+      << made.out;
 }
 
 }  // namespace

@@ -47,6 +47,19 @@ TEST(Diagnose, FindsNothingWrongWithHoap1) {
   EXPECT_EQ(findings([](auto&) {}), "");
 }
 
+// Only readers of URDF ignore the mass of the root link.
+TEST(Diagnose, TheMassOfTheRootMattersInUrdfOnly) {
+  const auto of = [](const std::string& file) {
+    return findings([&](RobotDescription& robot) {
+      robot.sidecar_file.clear();
+      robot.urdf_file = file;
+    });
+  };
+  EXPECT_NE(of("robot.URDF").find("the root link carries"), std::string::npos);
+  for (const char* const file : {"robot.xml", "robot.sdf", "robot.body", "robot.ZTK"})
+    EXPECT_EQ(of(file).find("the root link carries"), std::string::npos) << file;
+}
+
 TEST(Diagnose, NamesImplausibleInertias) {
   EXPECT_TRUE(mentions(
       findings([](auto& r) { link(r, "l_shank").inertia.about_com = Eigen::Matrix3d::Identity(); }),

@@ -265,6 +265,26 @@ TEST(RobotModel, NamesWhatIsWrongInTheUrdf) {
             "biped.urdf: joint l_knee: this joint mimics the joint 'l_cap', which does not move");
 }
 
+// Without meshes, feet cannot be recognized, so the message about missing soles names this cause.
+TEST(RobotModel, MissingMeshesMayBeWhySolesAreMissing) {
+  RobotDescription robot = biped();
+  robot.soles.clear();
+  const auto message = [&] {
+    try {
+      RobotModel(robot).sole(Side::left);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_NE(message().find("the robot has no soles"), std::string::npos) << message();
+  EXPECT_EQ(message().find("meshes"), std::string::npos) << message();
+  robot.missing_meshes = {"foot.stl"};
+  EXPECT_NE(message().find("find the missing meshes, which `ayumi inspect` lists"),
+            std::string::npos)
+      << message();
+}
+
 TEST(RobotModel, NamesWhatIsWrongInTheSidecar) {
   EXPECT_EQ(error_of([](auto& r) { r.soles["left"].link = "capp"; }),
             "robot.json: /soles/left/link: the link 'capp' does not exist; did you mean 'cap'?");
