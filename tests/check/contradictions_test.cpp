@@ -201,13 +201,6 @@ Pattern strong_jump() {
   return pattern;
 }
 
-TEST(Contradictions, AMissingProfileIsNamed) {
-  expect_named(
-      small(), strong_jump(), [](Pattern& p) { p.profile.clear(); },
-      "/profile: the pattern names no profile, .* with \"profile\": \"hoap1-strong\", the pattern "
-      "is consistent");
-}
-
 TEST(Contradictions, AKeyOfTheForceIsNamed) {
   expect_named(
       small(), strong_jump(), [](Pattern& p) { p.keyframes.front().fz = 32; },
