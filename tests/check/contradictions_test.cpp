@@ -297,5 +297,48 @@ TEST(Contradictions, AJointThatIsNoMirrorImageIsNamed) {
       "/postures/low: l_knee is 8 deg, .* with 80 deg, the pattern is consistent");
 }
 
+// Two knee bends, whose keyframes repeat in a block.
+TEST(Contradictions, ATimeSinceTheKeyframeBeforeIsNamed) {
+  const auto bends = [](double up) {
+    Pattern p;
+    p.phases = {{.until = 8, .swing = {}}};
+    double t = 0.5;
+    const auto key = [&](double height, int place) {
+      p.keyframes.emplace_back();
+      p.keyframes.back().t = t;
+      p.keyframes.back().cog_height = height;
+      p.keyframes.back().pointer =
+          place < 0 ? "/keyframes/0" : "/keyframes/1/keyframes/" + std::to_string(place);
+    };
+    key(0.6, -1);
+    for (int round = 0; round < 2; ++round) {
+      t += 1.5;
+      key(0.5, 0);
+      t += 0.3;
+      key(0.5, 1);
+      t += up;
+      key(0.6, 2);
+    }
+    return p;
+  };
+  expect_named(
+      tall(), bends(1.2), [&](Pattern& p) { p = bends(0.12); },
+      "/keyframes/1/keyframes/2: the keyframe is 0.12 s after the one before it; with 1.2 s, the "
+      "pattern is consistent");
+}
+
+// The times make the written motion a thousand times as long as the one that is meant.
+TEST(Contradictions, ALongWalkWithTimesInMillisecondsIsNamed) {
+  WalkParameters steps = walk_defaults(small());
+  steps.steps = 8;
+  expect_named(
+      small(), walk_pattern(small(), steps),
+      [](Pattern& p) {
+        for (Phase& phase : p.phases) phase.until *= 1000;
+        for (Keyframe& key : p.keyframes) key.t *= 1000;
+      },
+      "/phases: .*read as ms, the pattern is consistent");
+}
+
 }  // namespace
 }  // namespace ayumi::test::contradictions

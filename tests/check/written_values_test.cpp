@@ -22,8 +22,8 @@ Pattern with_every_number() {
   Pattern p;
   p.cog_height = 0.23;
   p.world.friction = 0.6;
-  p.start_feet[0] = Foothold{{0.01, 0.045, 0}, {}};
-  p.start_feet[1] = Foothold{{0.01, -0.045, 0}, {}};
+  p.start_feet[0] = Foothold{.position = {0.01, 0.045, 0}};
+  p.start_feet[1] = Foothold{.position = {0.01, -0.045, 0}};
   p.postures["wave"] = {{"r_elbow", 0.5}};
   Swing left{.foot = Side::left, .to = {{0.03, 0.05, 0}, {0, 0, 0.1}}, .lift = 0.03};
   Swing right{.foot = Side::right, .to = {}, .lift = 0.03};
@@ -161,6 +161,24 @@ TEST(WrittenValues, AreMeasuredByLegsRadiansAndTheWeight) {
   EXPECT_GT(foot.suspicion(hoap1()), 0.02 / 0.3);
   EXPECT_LT(foot.suspicion(hoap1()), 0.02 / 0.1);
   EXPECT_FALSE(find(values, "/world/friction", "the friction of the ground")->has_sign(hoap1()));
+}
+
+TEST(WrittenValues, TheSameNumberOfBothFeetIsOneValue) {
+  Pattern p = with_every_number();
+  p.keyframes[1].feet = p.start_feet;  // the feet stand there until the flight begins
+  p.keyframes[2].feet[0].emplace().position = {0.3, 0.05, 0};
+  p.keyframes[2].feet[1].emplace().position = {0.3, -0.05, 0};
+  p.phases = {{.until = 1, .support = Support::both, .swing = {}},
+              {.until = 2, .support = Support::none, .swing = {}},
+              {.until = 3, .support = Support::both, .swing = {}}};
+  const std::vector<WrittenValue> values = written_values(hoap1(), p);
+  const WrittenValue* both = find(values, "/keyframes/2", "the feet's x");
+  ASSERT_TRUE(both);
+  ASSERT_EQ(both->numbers.size(), 2u);
+  both->scale(p, 0.1);
+  EXPECT_DOUBLE_EQ(p.keyframes[2].feet[0]->position.x(), 0.03);
+  EXPECT_DOUBLE_EQ(p.keyframes[2].feet[1]->position.x(), 0.03);
+  EXPECT_FALSE(find(values, "/keyframes/2", "the feet's y"));
 }
 
 }  // namespace

@@ -231,7 +231,6 @@ class Hypotheses::Maker {
   std::vector<Hypothesis> paces() const {
     std::vector<Hypothesis> made;
     cog_height(made);
-    profiles(made);
     superfluous_keys(made);
     if (pattern_.table || pattern_.correction) return made;
     lower_take_offs(made);
@@ -1988,21 +1987,6 @@ class Hypotheses::Maker {
             for (Disturbance& disturbance : p.scenario) disturbance.at += more;
           });
       break;
-    }
-  }
-
-  // A pattern without a profile has the first one of the robot, which may be too weak.
-  void profiles(std::vector<Hypothesis>& made) const {
-    if (!pattern_.profile.empty()) return;
-    const std::string& usual = model_.limits().name;
-    for (const std::string& name : model_.profile_names()) {
-      if (name == usual) continue;
-      made.push_back(
-          {Rank::pace,
-           {"/profile", "the pattern names no profile, so the motors are those of profile " + usual,
-            "with \"profile\": \"" + name + "\""},
-           [name](Pattern& p) { p.profile = name; }});
-      made.back().only_if_enough = true;
     }
   }
 

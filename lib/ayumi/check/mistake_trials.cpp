@@ -62,11 +62,7 @@ bool needs_servo_period(FindingKind kind) {
 
 Trials::Trials(const RobotModel& model, const Pattern& pattern, const CheckOptions& options,
                const Progress& progress, int most)
-    : model_(model),
-      options_(options),
-      profile_(pattern.profile),
-      progress_(progress),
-      most_(most) {
+    : model_(model), options_(options), progress_(progress), most_(most) {
   options_.threads = 1;
   threads_ = options.threads;
   const double step = std::min(pattern.duration() / kTrialSamples, kLongestStep);
@@ -95,7 +91,6 @@ TrialOutcome Trials::of(const Pattern& pattern, bool exact) const {
   try {
     CheckOptions options = options_;
     options.friction = pattern.world.friction;
-    if (pattern.profile != profile_) options.profile = pattern.profile;
     const ConsistencyReport report =
         check_consistency(model_, sample(model_, pattern, {.dt = dt, .threads = 1}), options);
     outcome.errors = outcome.findings = 0;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <functional>
 #include <limits>
-#include <string>
 #include <vector>
 
 #include "ayumi/base/progress.hpp"
@@ -85,7 +84,6 @@ class Trials {
 
   const RobotModel& model_;
   CheckOptions options_;
-  std::string profile_;  ///< the profile that the pattern names
   const Progress& progress_;
   int threads_ = 0, most_ = 0;
   int ticks_ = 1;     ///< ticks of the servo in one time step of a quick trial
