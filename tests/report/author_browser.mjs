@@ -511,6 +511,35 @@ async function poses(tab) {
   expect(lower?.cog?.height > 0, "a key of the COG height: " + JSON.stringify(lower));
   expect(JSON.stringify(data().keyframes.map((frame) => frame.zmp).filter(Boolean)) === zmpBefore, "the ZMP keeps its keys");
   await tab.after(() => tab.click("#undo"));
+  await dragsAFoot(tab);
+}
+
+/// In the slanted view, a drag moves a swinging foot over the ground and keeps its lift; with Shift, it changes the lift
+/// and keeps the place. The place can also be typed.
+async function dragsAFoot(tab) {
+  const before = data(), begins = (i) => i > 0 ? before.phases[i - 1].until : 0;
+  const i = before.phases.findIndex((phase, k) => phase.swing && k > 2);
+  const { foot } = before.phases[i].swing, time = (begins(i) + before.phases[i].until) / 2;
+  await tab.run("window.ayumiAuthor.page.viewer.look('iso'); window.ayumiAuthor.page.show(arguments[0]);", time);
+  const pixel = () => tab.run("return window.ayumiAuthor.pixelOf(arguments[0])", foot + "_foot");
+  const swing = () => data().phases[i].swing, placeOf = (one) => JSON.stringify(one.to ?? one.step);
+  await tab.after(async () => tab.drag(await pixel(), [2, 1]));
+  expect(swing().lift === before.phases[i].swing.lift && placeOf(swing()) !== placeOf(before.phases[i].swing),
+    "a drag moves a foot over the ground: " + JSON.stringify(swing()));
+  await tab.after(() => tab.click("#undo"));
+  await tab.after(async () => tab.drag(await pixel(), [5, -3], "Shift"));
+  expect(swing().lift > before.phases[i].swing.lift && placeOf(swing()) === placeOf(before.phases[i].swing),
+    "with Shift it moves up: " + JSON.stringify(swing()));
+  await tab.after(() => tab.click("#undo"));
+  await tab.run(`const p = window.ayumiAuthor.page; document.getElementById("handle").value = arguments[0]; p.pose.fillPlace();`, foot + "_foot");
+  const x = Number(await tab.run("return document.getElementById('place-x').value"));
+  await tab.type("#place-x", (x + 4).toFixed(1), "input");
+  await until(() => tab.run("return window.ayumiAuthor.page.previewed !== null"));
+  await tab.after(() => tab.click("#write-pose"));
+  expect(swing().lift === before.phases[i].swing.lift && placeOf(swing()) !== placeOf(before.phases[i].swing),
+    "its place is typed: " + JSON.stringify(swing()));
+  await tab.after(() => tab.click("#undo"));
+  expect(JSON.stringify(data()) === JSON.stringify(before), "undo gives everything back");
 }
 
 async function postures(tab) {

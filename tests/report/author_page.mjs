@@ -70,12 +70,15 @@ export async function openPage(driver_, width, height) {
   selector, String(value), event);
   tab.box = (selector) => tab.run(`const b = document.querySelector(arguments[0]).getBoundingClientRect();
     return [b.left + b.width / 2, b.top + b.height / 2, b.width, b.height];`, selector);
-  tab.drag = (from, by) => tab.act([{ type: "pointer", id: "mouse", parameters: { pointerType: "mouse" }, actions: [
+  const keys = { Shift: "\uE008" };
+  tab.drag = (from, by, held = "") => tab.act([{ type: "pointer", id: "mouse", parameters: { pointerType: "mouse" }, actions: [
     { type: "pointerMove", duration: 0, x: Math.round(from[0]), y: Math.round(from[1]) },
     { type: "pointerDown", button: 0 },
     { type: "pointerMove", duration: 50, x: Math.round(from[0] + by[0] / 2), y: Math.round(from[1] + by[1] / 2) },
     { type: "pointerMove", duration: 50, x: Math.round(from[0] + by[0]), y: Math.round(from[1] + by[1]) },
-    { type: "pause", duration: 300 }, { type: "pointerUp", button: 0 }] }]);
+    { type: "pause", duration: 300 }, { type: "pointerUp", button: 0 }] },
+    ...held ? [{ type: "key", id: "keys", actions: [{ type: "keyDown", value: keys[held] },
+      ...Array(4).fill({ type: "pause", duration: 0 }), { type: "keyUp", value: keys[held] }] }] : []]);
   return tab;
 }
 

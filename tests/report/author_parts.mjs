@@ -5,7 +5,7 @@ import { readFileSync } from "node:fs";
 import { test } from "node:test";
 
 import { TimeAxis, snapped } from "../../lib/ayumi/report/page/time_axis.js";
-import { largerPart, nearAxis } from "../../lib/ayumi/report/page/drag_parts.js";
+import { footWay, largerPart, nearAxis } from "../../lib/ayumi/report/page/drag_parts.js";
 import { arrowsOf, wordsOfPush } from "../../lib/ayumi/report/page/push_parts.js";
 import * as parts from "../../lib/ayumi/report/page/parts.js";
 import * as edits from "../../lib/ayumi/report/page/edits.js";
@@ -314,6 +314,23 @@ test("a drag of the COG or the trunk is level or upright, by its larger part", (
   largerPart(inPicture(0.03, 0.01), right, up).forEach((value, i) => near(value, [0.018, 0.024, 0][i]));
   // From above, both directions of the picture are level.
   largerPart([0.1, 0.2, 0.05], [1, 0, 0], [0, 0.8, 0.6 - 0.2]).forEach((value, i) => near(value, [0.1, (0.8 * 0.2 + 0.4 * 0.05) / 0.8, 0][i]));
+});
+
+test("a drag moves a foot over the ground, or with Shift up and down, from every side", () => {
+  const c = Math.cos(0.35), s = Math.sin(0.35), right = [0.6, 0.8, 0], up = [-0.8 * s, 0.6 * s, c];
+  const inPicture = (x, y) => [0, 1, 2].map((i) => x * right[i] + y * up[i]);
+  const is = (way, wanted) => way.forEach((value, i) => near(value, wanted[i]));
+  // The foot stays under the pointer: the part of its movement in the picture is that of the drag.
+  const level = footWay(inPicture(0.02, 0.03), right, up, false);
+  near(level[2], 0);
+  near(level[0] * right[0] + level[1] * right[1], 0.02);
+  near(level[0] * up[0] + level[1] * up[1], 0.03);
+  is(footWay(inPicture(0.02, 0.03), right, up, true), [0, 0, 0.03 / c]);
+  // From the side the ground is a line, and from above nothing moves up.
+  is(footWay([0.02, 0, 0.03], [1, 0, 0], [0, 0, 1], false), [0.02, 0, 0]);
+  is(footWay([0.02, 0, 0.03], [1, 0, 0], [0, 0, 1], true), [0, 0, 0.03]);
+  is(footWay([0.02, 0.03, 0], [1, 0, 0], [0, 1, 0], false), [0.02, 0.03, 0]);
+  is(footWay([0.02, 0.03, 0], [1, 0, 0], [0, 1, 0], true), [0, 0, 0]);
 });
 
 test("a view that is nearly along an axis drags exactly across it", () => {

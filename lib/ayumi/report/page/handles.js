@@ -5,7 +5,7 @@
 import { BufferGeometry, Line, LineBasicMaterial, Mesh, MeshBasicMaterial, OctahedronGeometry, Plane, Raycaster,
   SphereGeometry, Vector2, Vector3 } from "three";
 import { byId, seconds } from "./dom.js";
-import { largerPart, nearAxis } from "./drag_parts.js";
+import { footWay, largerPart, nearAxis } from "./drag_parts.js";
 import { bodyOf } from "./viewer.js";
 
 const reach = 14;  // [px] distance from a point within which the pointer takes it
@@ -25,7 +25,7 @@ export class Handles {
       stage.style.cursor = this.page.drawing ? "crosshair" : mark ? "grab" : "";
       const name = mark?.target ? `target of the ${mark.target.label} at ${seconds(mark.target.time)}` : mark?.handle.label;
       stage.title = !mark ? "" : this.isOneWay(mark.handle) && !mark.target ? `${name}: drag it sideways, or up and down`
-        : `${name}: drag it, with Shift only up and down`;
+        : `${name}: drag it${this.isFoot(mark.handle) && !mark.target ? " over the ground" : ""}, with Shift only up and down`;
     });
   }
 
@@ -170,13 +170,18 @@ export class Handles {
     return handle?.name === "cog" || handle?.name === "trunk";
   }
 
-  /// The drag is in the plane that faces the eye; with Shift, it is only vertical.
+  isFoot(handle) {
+    return Boolean(handle?.foot);
+  }
+
+  /// The drag is in the plane that faces the eye, that of a foot over the ground; with Shift, it is
+  /// only vertical.
   dragOf({ handle, target, ball }, event) {
-    const { camera } = this.page.viewer, oneWay = !target && this.isOneWay(handle);
+    const { camera } = this.page.viewer, oneWay = !target && this.isOneWay(handle), foot = !target && this.isFoot(handle);
     const right = new Vector3(), up = new Vector3(), facing = new Vector3();
     camera.updateMatrixWorld();
     camera.matrixWorld.extractBasis(right, up, facing);
-    if (!oneWay) facing.set(...nearAxis(facing.toArray()));
+    if (!oneWay && !foot) facing.set(...nearAxis(facing.toArray()));
     const plane = new Plane().setFromNormalAndCoplanarPoint(facing, ball.position);
     const begin = ball.position.clone(), first = this.hit(event, plane);
     if (!first) return null;
@@ -189,6 +194,7 @@ export class Handles {
         if (!at) return;
         const way = at.sub(first);
         if (oneWay && !e.shiftKey) way.set(...largerPart(way.toArray(), right.toArray(), up.toArray()));
+        if (foot) way.set(...footWay(way.toArray(), right.toArray(), up.toArray(), e.shiftKey));
         const to = begin.clone().add(way);
         if (e.shiftKey) to.set(begin.x, begin.y, to.z);
         changed = changed || to.distanceTo(begin) > 5e-4;

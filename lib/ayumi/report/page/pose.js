@@ -94,14 +94,22 @@ export class Pose {
     const handle = this.handle();
     if (!handle || !this.page.handles) return;
     const at = this.page.handles.placeOf(handle, this.page.row());
-    for (const axis of Object.keys(words))
-      if (document.activeElement !== byId("place-" + axis))
-        byId("place-" + axis).value = fixed(1000 * at[axis], 1);
+    this.shownPlace = {};
+    for (const axis of Object.keys(words)) {
+      const shown = fixed(1000 * at[axis], 1);
+      this.shownPlace[axis] = { value: at[axis], words: shown };
+      if (document.activeElement !== byId("place-" + axis)) byId("place-" + axis).value = shown;
+    }
   }
 
   typed() {
-    const to = ["x", "y", "z"].map((axis) => Number(byId("place-" + axis).value) / 1000);
-    if (to.every(Number.isFinite)) this.ask({ drag: byId("handle").value, to });
+    // A coordinate that is not typed keeps all its digits.
+    const axes = Object.keys(words), from = axes.map((axis) => this.shownPlace[axis].value);
+    const to = axes.map((axis, i) => {
+      const { value } = byId("place-" + axis);
+      return value === this.shownPlace[axis].words ? from[i] : Number(value) / 1000;
+    });
+    if (to.every(Number.isFinite)) this.ask({ drag: byId("handle").value, from, to });
   }
 
   /// Asks the server. Only one question is sent at a time; while it is being answered, only the
