@@ -19,13 +19,12 @@ begins only where git sees no change in lib.)
 Only lines are changed that contain a whole statement or a whole condition. A fault that does not
 compile is left out. With `--minutes`, the script tries as many of the faults as fit into this
 time. It prints the share of noticed faults, and the interval in which it lies with 95 %
-probability. It needs python3. The faults that no test has noticed are listed
+probability. It needs python3, CMake and Ninja, and configures a build folder of its own. The faults that no test has noticed are listed
 at the end with file and line: each needs a test, or a reason why it changes nothing.
 """
 import argparse
 import collections
 import concurrent.futures
-import json
 import math
 import os
 import random
@@ -292,9 +291,9 @@ def trace(build, test, count):
 
 
 def all_tests(build):
-    answer = subprocess.run([os.path.join(build, "app", SELFTEST), "selftest", "--json", "--quiet"],
-                            cwd=SOURCE, capture_output=True, text=True, check=True).stdout
-    tests = [Test(SELFTEST, result["job"]) for result in json.loads(answer)["results"]]
+    with open(os.path.join(SOURCE, "app", "commands", "selftest.cpp")) as file:
+        jobs = re.findall(r'^    \{"(\w+)", "', file.read(), re.M)
+    tests = [Test(SELFTEST, job) for job in jobs]
     for program in PROGRAMS:
         listed = subprocess.run([os.path.join(build, "tests", program), "--gtest_list_tests"],
                                 cwd=SOURCE, capture_output=True, text=True, check=True).stdout
@@ -357,6 +356,12 @@ def main():
     faults = [chance.choice(line) for line in lines[:options.count]]
     words = [words_of(fault) for fault in faults]
     noticed, unnoticed = 0, []
+    mark = os.path.join(build, "made_by_mutation")
+    if os.path.exists(build) and not os.path.exists(mark):
+        sys.exit(f"{build} belongs to another build; name another folder with --build")
+    os.makedirs(build, exist_ok=True)
+    with open(mark, "w"):
+        pass
     subprocess.run(["cmake", "-S", SOURCE, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
                     "-DCMAKE_CXX_FLAGS_RELEASE=-O2 -D_GLIBCXX_ASSERTIONS",
                     "-DAYUMI_BUILD_TESTS=ON"],

@@ -272,7 +272,7 @@ void compare(Context& context, const SelftestCommand& options) {
     different += !same;
     results.push_back(
         {{"job", job.name}, {"same", same}, {"sha256", found}, {"expected_sha256", job.sha256}});
-    table += std::string(same ? "same       " : "different  ") + job.words + "\n";
+    table += std::string(same ? "same       " : "different  ") + job.name + ": " + job.words + "\n";
     if (!same) table += "           SHA-256 " + found + ", expected " + job.sha256 + "\n";
   }
   table += different == 0
@@ -297,7 +297,7 @@ void add_selftest(Command& app, Context& context) {
   auto options = std::make_shared<SelftestCommand>();
   std::vector<std::string> names;
   for (const Job& job : kJobs) names.push_back(job.name);
-  command->add_option("JOB", options->jobs, "What is computed and compared; by default, all of it.")
+  command->add_option("JOB", options->jobs, "Names of the jobs to run (default: all).")
       ->check(one_of(names));
   command->footer(
       "Examples:\n  ayumi selftest\n  ayumi selftest walk jump\n  ayumi selftest --json");
