@@ -17,7 +17,7 @@ const std::regex kForeign(
     "std::(sin|cos|tan|exp|exp2|expm1|log|log2|log10|log1p|atan|atan2|asin|acos|pow|cbrt|hypot|"
     "sinh|"
     "cosh|tanh|erf|erfc|tgamma|lgamma|polar)[lf]?\\(|__builtin_(sin|cos|exp|log|pow)[lf]?\\(|"
-    "AngleAxis|"
+    "AngleAxis|Rotation2D|"
     "\\.slerp\\(|\\.angularDistance\\(|\\.eulerAngles\\(");
 
 /// Lists "file:line: text" for each use in the rooms that compute.

@@ -125,6 +125,9 @@ TEST(ElementaryPairs, RotationsAreThoseOfEigen) {
     const Eigen::Quaterniond a(Eigen::AngleAxisd(angle, axis)),
         b = elementary::turn_quaternion(3 * share, axis.cross(a * axis).normalized()) * a;
     EXPECT_LE((elementary::turn_matrix(angle, axis) - a.toRotationMatrix()).norm(), 4e-15);
+    EXPECT_LE(
+        (elementary::turn_in_plane(angle) - Eigen::Rotation2Dd(angle).toRotationMatrix()).norm(),
+        4e-15);
     EXPECT_LE((elementary::turn_quaternion(angle, axis).coeffs() - a.coeffs()).norm(), 1e-15);
     EXPECT_LE((elementary::between(a, b, share).coeffs() - a.slerp(share, b).coeffs()).norm(),
               1e-14);

@@ -257,12 +257,12 @@ Vector2d FootholdShift::error_left_over(const Vector2d& dcm, double time_scale) 
 /// A foot that would cross the other one keeps the sideways place of the pattern.
 Vector2d FootholdShift::not_crossing(const Vector2d& target) const {
   const Step& step = steps_[coming_];
-  const Eigen::Rotation2Dd turn(step.stance.yaw);
+  const Eigen::Matrix2d turn = elementary::turn_in_plane(step.stance.yaw);
   Vector2d offset =
-      turn.inverse() * (step.landing.position + target - after_ - step.stance.position);
+      turn.transpose() * (step.landing.position + target - after_ - step.stance.position);
   const double side = step.swing.foot == Side::left ? 1 : -1;
   if (side * offset.y() < 2 * half_width_ + kSoleClearance)
-    offset.y() = (turn.inverse() * (step.landing.position - step.stance.position)).y();
+    offset.y() = (turn.transpose() * (step.landing.position - step.stance.position)).y();
   return step.stance.position + turn * offset - step.landing.position + after_;
 }
 
@@ -318,8 +318,8 @@ void FootholdShift::solve_foothold(const Vector2d& dcm) {
   const double time = seconds_to(step.swing.land);
   if (time < series_->dt) return;
   const double yaw = step.stance.yaw;
-  const Eigen::Rotation2Dd turn(yaw);
-  const auto local = [&](const Vector2d& v) -> Vector2d { return turn.inverse() * v / height_; };
+  const Eigen::Matrix2d turn = elementary::turn_in_plane(yaw);
+  const auto local = [&](const Vector2d& v) -> Vector2d { return turn.transpose() * v / height_; };
   StepProblem p;
   p.error = local(dcm - divergent_component(now_.cog, now_.dcog, omega_).head<2>() -
                   dcm_shift(1, after_));

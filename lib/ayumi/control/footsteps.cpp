@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/math/rotation.hpp"
 
 namespace ayumi {
@@ -25,7 +26,7 @@ constexpr int kPreview = 6;
 // robot hurry back. No measured case changes between half and twice the value (constants.md).
 constexpr double kLargestError = 0.35;
 
-Vector2d turned_by(const Vector2d& v, double yaw) { return Eigen::Rotation2Dd(yaw) * v; }
+Vector2d turned_by(const Vector2d& v, double yaw) { return elementary::turn_in_plane(yaw) * v; }
 
 double sign_of(Side side) { return side == Side::left ? 1.0 : -1.0; }
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/math/quadratic_program.hpp"
 
 namespace ayumi {
@@ -17,7 +18,7 @@ using Eigen::Vector2d;
 void set_support(StepProblem& problem, const ConvexPolygon& about_zmp, double yaw, double height,
                  double share) {
   const std::vector<Vector2d>& v = about_zmp.vertices();
-  const Eigen::Matrix2d turn = Eigen::Rotation2Dd(-yaw).toRotationMatrix();
+  const Eigen::Matrix2d turn = elementary::turn_in_plane(-yaw);
   problem.edges = 0;
   for (size_t i = 0; i < v.size() && problem.edges < static_cast<int>(problem.normal.size()); ++i) {
     const Vector2d edge = v[(i + 1) % v.size()] - v[i];

@@ -192,6 +192,11 @@ double power(double x, double y) {
   return exp_of_pair({p.high, p.low + y * logarithm.low});
 }
 
+Eigen::Matrix2d turn_in_plane(double angle) {
+  const double s = sin(angle), c = cos(angle);
+  return (Eigen::Matrix2d() << c, -s, s, c).finished();
+}
+
 Eigen::Matrix3d turn_matrix(double angle, const Eigen::Vector3d& axis) {
   const double s = sin(angle), c = cos(angle);
   const Eigen::Vector3d sines = s * axis, rest = (1 - c) * axis;

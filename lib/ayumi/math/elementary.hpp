@@ -34,6 +34,8 @@ double power(double x) {
   return result;
 }
 
+/// The matrix of the rotation in the plane by `angle` [rad], as by Eigen::Rotation2Dd.
+Eigen::Matrix2d turn_in_plane(double angle);
 /// The matrix of the rotation by `angle` [rad] about the unit vector `axis`, as by
 /// Eigen::AngleAxisd.
 Eigen::Matrix3d turn_matrix(double angle, const Eigen::Vector3d& axis);

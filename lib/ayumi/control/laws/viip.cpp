@@ -494,15 +494,15 @@ Vector2d Viip::landing_point(const PlannedStep& step, const Vector2d& dcm) const
   const double reach = params_.reach * height_;
   for (int i = 0; i < 2; ++i)
     target[i] = std::clamp(target[i], nominal[i] - reach, nominal[i] + reach);
-  target -= Eigen::Rotation2Dd(step.landing.yaw) * landing_bias_[index(foot)];
+  target -= elementary::turn_in_plane(step.landing.yaw) * landing_bias_[index(foot)];
   const GroundPose stance = ground_pose(*model_, anchor_, plan_.feet[index(anchor_)]);
-  Vector2d beside_stance = Eigen::Rotation2Dd(-stance.yaw) * (target - stance.position);
+  Vector2d beside_stance = elementary::turn_in_plane(-stance.yaw) * (target - stance.position);
   const double beside = 2 * sole_half_width(*model_) + kSoleClearance;
   if (foot == Side::left)
     beside_stance.y() = std::max(beside_stance.y(), beside);
   else
     beside_stance.y() = std::min(beside_stance.y(), -beside);
-  return stance.position + Eigen::Rotation2Dd(stance.yaw) * beside_stance;
+  return stance.position + elementary::turn_in_plane(stance.yaw) * beside_stance;
 }
 
 // The path of the swing foot: it lifts off, moves to the landing point, which may move, and comes
@@ -545,7 +545,7 @@ void Viip::update_landing_bias(const Vector2d& error) {
   footsteps_.shift(error);
   const double yaw = ground_pose(*model_, anchor_, plan_.feet[index(anchor_)]).yaw;
   Vector2d& bias = landing_bias_[index(anchor_)];
-  bias += kBiasShare * (Eigen::Rotation2Dd(-yaw) * error - bias);
+  bias += kBiasShare * (elementary::turn_in_plane(-yaw) * error - bias);
   const double most = kLandingBiasLimit * height_;
   if (bias.norm() > most) bias *= most / bias.norm();
 }
