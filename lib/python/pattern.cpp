@@ -132,10 +132,15 @@ void bind_pattern(py::module_& m) {
   m.def("read_pattern", &read_pattern, py::arg("path"),
         py::arg("set") = std::map<std::string, double>(),
         "Reads a pattern file. `set` gives values to parameters that the pattern declares.");
-  m.def("parse_pattern", &pattern_of_text, py::arg("text"), py::arg("path") = "pattern.json",
-        py::arg("set") = std::map<std::string, double>(),
-        "Reads a pattern from the text of a file. Messages call this file `path`, and files that "
-        "the text names are looked for beside `path`.");
+  m.def(
+      "parse_pattern",
+      [](const std::string& text, const Path& path, const std::map<std::string, double>& set) {
+        return pattern_of_text(text, path, set);
+      },
+      py::arg("text"), py::arg("path") = "pattern.json",
+      py::arg("set") = std::map<std::string, double>(),
+      "Reads a pattern from the text of a file. Messages call this file `path`, and files that "
+      "the text names are looked for beside `path`.");
   bind_generators(m);
 }
 
