@@ -327,7 +327,8 @@ TEST(Contradictions, AJointThatIsNoMirrorImageIsNamed) {
   }
   expect_named(
       tall(), p, [&](Pattern& wrong) { wrong.postures["low"]["l_knee"] = 8 * kDegree; },
-      "/postures/low: l_knee is 8 deg, .* with 80 deg, the pattern is consistent");
+      "/postures/low: l_knee .8 deg. and r_knee .80 deg. are not mirror images; .* with l_knee at "
+      "80 deg, the pattern is consistent");
 }
 
 // Two knee bends, whose keyframes repeat in a block.
