@@ -5,13 +5,20 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <regex>
 #include <string>
+#include <vector>
 
 #include "ayumi/author/generate/generate.hpp"
+#include "ayumi/check/block_hypotheses.hpp"
 #include "ayumi/check/consistency.hpp"
 #include "ayumi/check/likely_mistakes.hpp"
+#include "ayumi/check/mistake_hypotheses.hpp"
+#include "ayumi/check/mistake_search.hpp"
+#include "ayumi/check/mistake_trials.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "tests/support/robot_motions.hpp"
 
@@ -107,7 +114,8 @@ Pattern steps_in_blocks(const Steps& steps) {
 TEST(Contradictions, AnotherNumberOfRoundsIsNamed) {
   expect_named(
       small(), steps_in_blocks({}), [](Pattern& p) { p = steps_in_blocks({.key_rounds = 2}); },
-      "/keyframes/2: the block of keyframes repeats 2 times, and the block of phases /phases/1 3 "
+      "/keyframes/2: the block of keyframes repeats 2 times, but the block of phases /phases/1 "
+      "repeats 3 "
       "times; with \"repeat\": 3 here, the pattern is consistent");
 }
 
@@ -121,8 +129,9 @@ TEST(Contradictions, AWrongDurationInABlockIsNamed) {
 TEST(Contradictions, KeyframesThatAreOneRoundLateAreNamed) {
   expect_named(
       small(), steps_in_blocks({}), [](Pattern& p) { p = steps_in_blocks({.late = 1.2}); },
-      "/keyframes/2: the first round of the keyframes begins at 2.4 s, and that of the phases at "
-      "1.2 s; .* keyframes 1.2 s earlier, the pattern is consistent");
+      "/keyframes/2: the repeated keyframes begin at 2.4 s, but the repeated phases begin at 1.2 "
+      "s; "
+      ".* keyframes 1.2 s earlier, the pattern is consistent");
 }
 
 TEST(Contradictions, MissingKeysOfTheZmpAreNamed) {
@@ -172,6 +181,30 @@ TEST(Contradictions, AKeyThatIsNotAtTheEndOfItsPhaseIsNamed) {
 TEST(Contradictions, ADurationThatMovesAllLaterPhasesIsNamed) {
   expect_named(
       small(), side_steps(),
+      [](Pattern& p) {
+        for (size_t i = 1; i < p.phases.size(); ++i) p.phases[i].until -= 0.54;
+      },
+      "/phases/1: the phase lasts 0.06 s, .* with a duration of 0.6 s .* the pattern is "
+      "consistent");
+}
+
+// The same mistakes 20 s later: times are compared by their difference, not by a share of it.
+Pattern late_side_steps() {
+  Pattern p = side_steps();
+  for (Phase& phase : p.phases) phase.until += 20;
+  for (Keyframe& key : p.keyframes) key.t += 20;
+  return p;
+}
+
+TEST(Contradictions, AKeyLateInAWalkThatIsNotAtTheEndOfItsPhaseIsNamed) {
+  expect_named(
+      small(), late_side_steps(), [](Pattern& p) { p.keyframes[3].t = 22.5; },
+      "/keyframes/3: t is 22.5 s, .* with t = 22 s, the pattern is consistent");
+}
+
+TEST(Contradictions, ADurationLateInAWalkIsNamed) {
+  expect_named(
+      small(), late_side_steps(),
       [](Pattern& p) {
         for (size_t i = 1; i < p.phases.size(); ++i) p.phases[i].until -= 0.54;
       },
@@ -263,8 +296,8 @@ TEST(Contradictions, AKickThatStaysInTheAirIsNamed) {
     if (kick.keyframes[i].feet[1]) last = i;
   expect_named(
       small(), kick, [&](Pattern& p) { p.keyframes[last].feet[1].reset(); },
-      "/keyframes/[0-9]+: the right foot's z is .* when it begins to carry the robot; .* with a "
-      "key of this foot at its old place at this time, the pattern is consistent");
+      "/keyframes/[0-9]+: this is the right foot's last key before it carries the robot at .* with "
+      "one more key at .* s that puts the foot back to its old place, the pattern is consistent");
 }
 
 TEST(Contradictions, FootholdsWithXAndYExchangedAreNamed) {
@@ -294,7 +327,8 @@ TEST(Contradictions, AJointThatIsNoMirrorImageIsNamed) {
   }
   expect_named(
       tall(), p, [&](Pattern& wrong) { wrong.postures["low"]["l_knee"] = 8 * kDegree; },
-      "/postures/low: l_knee is 8 deg, .* with 80 deg, the pattern is consistent");
+      "/postures/low: l_knee .8 deg. and r_knee .80 deg. are not mirror images; .* with l_knee at "
+      "80 deg, the pattern is consistent");
 }
 
 // Two knee bends, whose keyframes repeat in a block.
@@ -323,7 +357,8 @@ TEST(Contradictions, ATimeSinceTheKeyframeBeforeIsNamed) {
   };
   expect_named(
       tall(), bends(1.2), [&](Pattern& p) { p = bends(0.12); },
-      "/keyframes/1/keyframes/2: the keyframe is 0.12 s after the one before it; with 1.2 s, the "
+      "/keyframes/1/keyframes/2: the keyframe is 0.12 s after the one before it; with 1.2 s after "
+      "it, the "
       "pattern is consistent");
 }
 
@@ -338,6 +373,83 @@ TEST(Contradictions, ALongWalkWithTimesInMillisecondsIsNamed) {
         for (Keyframe& key : p.keyframes) key.t *= 1000;
       },
       "/phases: .*read as ms, the pattern is consistent");
+}
+
+Pattern walk_of(int steps) {
+  WalkParameters parameters = walk_defaults(small());
+  parameters.steps = steps;
+  return walk_pattern(small(), parameters);
+}
+
+// The rounds of the inner block also have the pointer of the outer one.
+TEST(Contradictions, BlocksInBlocksAreNotCounted) {
+  Pattern p = steps_in_blocks({.phase_rounds = 6, .key_rounds = 2});
+  EXPECT_FALSE(block_hypotheses(p).empty());
+  for (Phase& phase : p.phases)
+    if (const size_t in = phase.pointer.find("/phases/", 1); in != std::string::npos)
+      phase.pointer.insert(in, "/phases/0");
+  EXPECT_TRUE(block_hypotheses(p).empty());
+}
+
+// Stairs that are not declared raise the foot of each step, but are one contradiction. They must
+// not keep the search from other mistakes.
+TEST(Contradictions, FeetOnUndeclaredStairsAreTriedTogether) {
+  constexpr size_t kFew = 5;
+  Pattern p = walk_of(70);
+  double height = 0;
+  for (Phase& phase : p.phases)
+    if (phase.swing) phase.swing->to.position.z() = height += 0.005;
+  const Hypotheses possible(small(), p, {});
+  size_t of_feet = 0;
+  for (const Hypothesis& h : possible.of(Hypotheses::Kind::times)) {
+    if (h.rank != Rank::geometry || h.says.written.find("foot's z") == std::string::npos) continue;
+    ++of_feet;
+    if (h.says.instead != "with all of them on the declared ground") continue;
+    Pattern level = p;
+    h.mend(level);
+    for (const Phase& phase : level.phases)
+      if (phase.swing) {
+        EXPECT_NEAR(phase.swing->to.position.z(), 0, 1e-9);
+      }
+  }
+  EXPECT_EQ(of_feet, kFew);
+}
+
+// A phase that is nearly as long as usual may still end beside its key.
+TEST(Contradictions, AnEndBesideItsKeyIsTriedAlsoNearTheUsualDuration) {
+  Pattern p = walk_of(8);
+  const double meant = p.phases[3].until;
+  p.phases[3].until += 0.05;
+  const Hypotheses possible(small(), p, {});
+  const std::vector<Hypothesis> times = possible.of(Hypotheses::Kind::times);
+  EXPECT_TRUE(std::any_of(times.begin(), times.end(), [&](const Hypothesis& h) {
+    Pattern mended = p;
+    h.mend(mended);
+    return h.says.place == "/phases/3" && std::abs(mended.phases[3].until - meant) < 1e-9 &&
+           mended.phases[4].until == p.phases[4].until;
+  }));
+}
+
+// A change that makes the motion too long for the trials that are left does not keep shorter ones
+// from being tried.
+TEST(Contradictions, AChangeThatIsTooCostlyDoesNotEndTheSearch) {
+  const Pattern sound = side_steps();
+  Trials trials(small(), sound, options_of(sound), {}, 2);
+  const std::vector<TrialOutcome> outcomes =
+      trials.after(sound, {[](Pattern& p) { p.phases.back().until += 20; }, [](Pattern&) {}});
+  EXPECT_EQ(outcomes[0].errors, kUnsampled);
+  EXPECT_TRUE(outcomes[1].good());
+  EXPECT_TRUE(trials.ended());
+}
+
+// More mistakes than the search names, in a motion that may have more than it tries of one kind.
+TEST(Contradictions, ASearchThatLeavesOutChangesIsNotComplete) {
+  constexpr int kAmple = 100'000;
+  Pattern p = walk_of(24);
+  for (Phase& phase : p.phases)
+    if (phase.swing) phase.swing->to.position.y() += phase.swing->foot == Side::left ? 0.5 : -0.5;
+  const Explanations search = find_explanations(small(), p, options_of(p), {}, kAmple);
+  EXPECT_FALSE(search.complete);
 }
 
 }  // namespace

@@ -40,14 +40,23 @@ std::string block_of(const std::string& pointer) {
   return item == std::string::npos ? "" : pointer.substr(0, item);
 }
 
-// The first block with at least two rounds. `time_of` gives the time of an item.
+// Whether an item is in a block that is in another block, as "/keyframes/2/keyframes/0/keyframes/1"
+// is. Its rounds cannot be told apart by the pointer.
+bool is_nested(const std::string& pointer) {
+  constexpr long kInOneBlock = 4;  // "/list/block/list/item"
+  return std::count(pointer.begin(), pointer.end(), '/') > kInOneBlock;
+}
+
+// The first block with at least two rounds; nothing if it contains another block. `time_of` gives
+// the time of an item.
 template <class Items, class TimeOf>
 std::optional<Block> first_block(const Items& items, const TimeOf& time_of) {
   for (size_t i = 0; i < items.size(); ++i) {
     Block block{.place = block_of(items[i].pointer), .first = i};
     if (block.place.empty()) continue;
     size_t end = i;
-    while (end < items.size() && block_of(items[end].pointer) == block.place) ++end;
+    for (; end < items.size() && block_of(items[end].pointer) == block.place; ++end)
+      if (is_nested(items[end].pointer)) return std::nullopt;
     block.rounds = static_cast<size_t>(
         std::count_if(items.begin() + static_cast<long>(i), items.begin() + static_cast<long>(end),
                       [&](const auto& item) { return item.pointer == items[i].pointer; }));
@@ -60,7 +69,7 @@ std::optional<Block> first_block(const Items& items, const TimeOf& time_of) {
   return std::nullopt;
 }
 
-/// Tries how two blocks fit each other.
+/// Finds changes after which two blocks fit each other.
 class Fit {
  public:
   Fit(const Pattern& pattern, const Block& phases, const Block& keys)
@@ -113,7 +122,7 @@ class Fit {
 
   void rounds() {
     const std::string times = " repeats " + text::counted(keys_.rounds, "time") +
-                              ", and the block of phases " + phases_.place + " " +
+                              ", but the block of phases " + phases_.place + " repeats " +
                               text::counted(phases_.rounds, "time");
     add(keys_.place, "the block of keyframes" + times,
         "with \"repeat\": " + std::to_string(phases_.rounds) + " here",
@@ -122,7 +131,7 @@ class Fit {
         });
     add(phases_.place,
         "the block of phases repeats " + text::counted(phases_.rounds, "time") +
-            ", and the block of keyframes " + keys_.place + " " +
+            ", but the block of keyframes " + keys_.place + " repeats " +
             text::counted(keys_.rounds, "time"),
         "with \"repeat\": " + std::to_string(keys_.rounds) + " here",
         [phases = phases_, rounds = keys_.rounds](Pattern& p) {
@@ -137,7 +146,7 @@ class Fit {
            ", and the keyframes of " + keys_.place + " repeat every " + in_seconds(keys_.period);
   }
 
-  // A duration that becomes another one by a slip of a digit is the most likely one to be wrong.
+  // -1 if one wrong digit explains the difference; otherwise the relative difference.
   static double unlikeliness(double written, double meant) {
     for (const double slip : number_slips(written))
       if (std::abs(slip - meant) < kSameDuration) return -1;
@@ -166,7 +175,8 @@ class Fit {
 
   void segments() {
     for (size_t j = 0; j < keys_.each; ++j) {
-      // The first keyframe of a round has its own time, so the whole round is shorter or longer.
+      // For the first keyframe of a round, the segment begins at the last keyframe of the previous
+      // round.
       const size_t key = keys_.first + j;
       const double lasts = j > 0 ? pattern_.keyframes[key].t - pattern_.keyframes[key - 1].t
                                  : keys_.period - (pattern_.keyframes[key + keys_.each - 1].t -
@@ -176,7 +186,7 @@ class Fit {
       add(
           pattern_.keyframes[key].pointer,
           "the keyframe is " + in_seconds(lasts) + " after the one before it; " + lengths(),
-          "with " + in_seconds(meant),
+          "with " + in_seconds(meant) + " after it",
           [block = keys_, j, by = meant - lasts](Pattern& p) {
             double later = 0;
             for (size_t i = block.first; i < p.keyframes.size(); ++i) {
@@ -195,9 +205,9 @@ class Fit {
     const double late = keys_.begin - phases_.begin, rounds = std::round(late / keys_.period);
     if (rounds == 0 || std::abs(late - rounds * keys_.period) > kSameDuration) return;
     add(keys_.place,
-        "the first round of the keyframes begins at " + in_seconds(keys_.begin) +
-            ", and that of the phases at " + in_seconds(phases_.begin) + "; a round lasts " +
-            in_seconds(keys_.period),
+        "the repeated keyframes begin at " + in_seconds(keys_.begin) +
+            ", but the repeated phases begin at " + in_seconds(phases_.begin) +
+            "; one round lasts " + in_seconds(keys_.period),
         "with these and all later keyframes " + in_seconds(std::abs(late)) +
             (late > 0 ? " earlier," : " later,"),
         [first = keys_.first, late](Pattern& p) {

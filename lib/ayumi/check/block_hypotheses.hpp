@@ -1,7 +1,7 @@
 #pragma once
-// Blocks of phases and of keyframes that repeat, but do not fit each other: another number of
-// rounds, another length of a round, or keyframes that are late by whole rounds. A walk repeats its
-// steps in both lists, and an author easily changes only one of them.
+// Finds repeated blocks of phases and of keyframes that do not fit each other: they differ in
+// number or length of rounds, or are shifted by whole rounds. A walk repeats its steps in both
+// lists, and an author easily changes only one of them.
 
 #include <vector>
 
@@ -10,7 +10,8 @@
 namespace ayumi {
 
 /// The changes with which the first block of keyframes fits the first block of phases. Nothing if
-/// one of the lists has no block of at least two rounds, or if the blocks fit.
+/// one of the lists has no block of at least two rounds, if a block contains another one, or if the
+/// blocks fit.
 std::vector<Hypothesis> block_hypotheses(const Pattern& pattern);
 
 }  // namespace ayumi

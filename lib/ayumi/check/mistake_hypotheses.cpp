@@ -46,9 +46,13 @@ constexpr double kShortestPhase = 0.02;
 // If at least this many keyframes would fall on the ends of phases, this is no coincidence. Chosen:
 // the keyframes of two steps.
 constexpr long kManyKeys = 4;
-// Two times that differ by less than this share are meant to be equal. Chosen: times are written in
-// milliseconds, and a factor that is derived from such times has an error of this size.
-constexpr double kSameTime = 0.005;
+// Two times are equal after one of them was multiplied by a factor if they differ by less than this
+// share. Chosen: times are written in milliseconds, and a factor that is derived from such times
+// has an error of this size.
+constexpr double kSameStretchedTime = 0.005;
+// Two times that differ by less than this are the same instant [s]. Chosen: times are written in
+// milliseconds, and each of the two is rounded.
+constexpr double kSameInstant = 0.002;
 // A length below this counts as zero [m]. Definition: rounding errors are smaller.
 constexpr double kNoLength = 1e-4;
 // Numbers of a target below this are taken for metres, whatever the other numbers are. Chosen: read
@@ -68,6 +72,9 @@ constexpr size_t kTurnedKeys = 3, kPlacedKeys = 3;
 // Chosen: with less than half, much of the motion is lost, and another change is probably better;
 // below a quarter, little of the motion is left.
 constexpr std::array kMildShares = {0.85, 0.7, 0.55}, kSmallShares = {0.55, 0.4, 0.25};
+// Number of feet above the ground or in it that are tried one by one. Chosen: a wrong height of one
+// step also raises the steps after it, and its own change mends them all.
+constexpr size_t kRaisedAlone = 4;
 // Below this, the turn of a foot against the other one is ignored [rad]. Chosen: ten degrees.
 constexpr double kNotedTurn = 0.17;
 // A COG that is farther than this from the middle of the feet is not above them; the bound is a
@@ -107,9 +114,8 @@ constexpr double kRestReach = 2;
 // Number of steps of a second in which rests are named. Chosen: an author writes tenths of a
 // second.
 constexpr double kRestsPerSecond = 10;
-// The size that is given to a change of a time with which a keyframe and the end of a phase are at
-// the same time. Definition: it comes before the changes of key_times() that nothing else speaks
-// for, which have sizes from -2 on.
+// Sort value (Hypothesis::change) of a change that puts a keyframe at the end of a phase.
+// Definition: below -2, the smallest value of other changes of times, so that it comes first.
 constexpr double kCoincidence = -3;
 // Number of bisection steps in the search for a time. Chosen: an interval of a second becomes a
 // microsecond, and times are written in milliseconds.
@@ -118,6 +124,18 @@ constexpr int kHalvings = 20;
 std::string seconds(double t) { return text::brief(t, 5) + " s"; }
 
 bool is_single(Support support) { return support == Support::left || support == Support::right; }
+
+// Whether `same` holds for one of the two neighbours of `t` in a sorted list of times.
+template <class Same>
+bool has_beside(const std::vector<double>& times, double t, const Same& same) {
+  const auto after = std::lower_bound(times.begin(), times.end(), t);
+  return (after != times.end() && same(*after)) ||
+         (after != times.begin() && same(*std::prev(after)));
+}
+
+bool has_instant(const std::vector<double>& times, double t) {
+  return has_beside(times, t, [&](double other) { return std::abs(other - t) < kSameInstant; });
+}
 
 Side stance_of(Support support) { return support == Support::left ? Side::left : Side::right; }
 
@@ -135,6 +153,11 @@ class Hypotheses::Maker {
  public:
   Maker(const RobotModel& model, const Pattern& pattern, const TrialOutcome& found)
       : model_(model), pattern_(pattern), found_(found), values_(written_values(model, pattern)) {
+    for (const Phase& phase : pattern.phases) ends_.push_back(phase.until);
+    for (const Keyframe& key : pattern.keyframes)
+      if (is_of_contact(key)) contacts_.push_back(key.t);
+    std::sort(ends_.begin(), ends_.end());
+    std::sort(contacts_.begin(), contacts_.end());
     try {
       feet_.emplace(model, pattern);
     } catch (const Error&) {  // the phases themselves are wrong
@@ -307,9 +330,9 @@ class Hypotheses::Maker {
     const auto& keys = pattern_.keyframes;
     const auto fitting = [&](double factor) {
       return std::count_if(keys.begin(), keys.end(), [&](const Keyframe& key) {
-        return std::any_of(pattern_.phases.begin(), pattern_.phases.end(), [&](const Phase& phase) {
-          return std::abs(phase.until - factor * key.t) < kSameTime * phase.until;
-        });
+        const double t = factor * key.t;
+        return has_beside(ends_, t,
+                          [&](double end) { return std::abs(end - t) < kSameStretchedTime * end; });
       });
     };
     const long now = fitting(1);
@@ -372,33 +395,29 @@ class Hypotheses::Maker {
   }
 
   // Whether a phase ends at this time.
-  bool is_at_end(double t) const {
-    return std::any_of(pattern_.phases.begin(), pattern_.phases.end(), [&](const Phase& phase) {
-      return std::abs(phase.until - t) < kSameTime * phase.until;
-    });
-  }
+  bool is_at_end(double t) const { return has_instant(ends_, t); }
 
-  // Whether a key belongs to a change of the support: it moves a foot, or puts the ZMP under one.
+  // Whether a key states the place of a foot, or a place of the ZMP other than "center".
   static bool is_of_contact(const Keyframe& key) {
     return (key.zmp && key.zmp->place != ZmpKey::Place::center) || key.feet[0] || key.feet[1];
   }
 
-  bool has_key_of_contact(double t) const {
-    return std::any_of(pattern_.keyframes.begin(), pattern_.keyframes.end(),
-                       [&](const Keyframe& key) {
-                         return is_of_contact(key) && std::abs(key.t - t) < kSameTime * t;
-                       });
-  }
+  bool has_key_of_contact(double t) const { return has_instant(contacts_, t); }
 
-  // Number of such keys that are at the end of a phase of this pattern.
-  static long keys_at_ends(const Pattern& pattern) {
-    return std::count_if(
-        pattern.keyframes.begin(), pattern.keyframes.end(), [&](const Keyframe& key) {
-          return is_of_contact(key) &&
-                 std::any_of(pattern.phases.begin(), pattern.phases.end(), [&](const Phase& phase) {
-                   return std::abs(phase.until - key.t) < kSameTime * phase.until;
-                 });
-        });
+  // Number of such keys after the beginning of this phase that are at the end of a phase if this
+  // end and all later ones are `later`. Both lists are sorted, so one pass through them is enough:
+  // a long walk has thousands of phases and keys.
+  long keys_at_ends(size_t phase, double later) const {
+    long keys = 0;
+    const double begin = begin_of(phase) + kSameInstant;
+    size_t end = phase;
+    for (auto key = std::lower_bound(contacts_.begin(), contacts_.end(), begin);
+         key != contacts_.end(); ++key) {
+      while (end < ends_.size() && ends_[end] + later <= *key - kSameInstant) ++end;
+      if (end == ends_.size()) break;
+      if (ends_[end] + later < *key + kSameInstant) ++keys;
+    }
+    return keys;
   }
 
   // A key of the ZMP or of a foot at the end of a phase belongs to the change of the support.
@@ -430,11 +449,12 @@ class Hypotheses::Maker {
         if (std::min(t - before, after - t) >= std::min(in, out))
           add(Rank::slip, t, "", too_early ? -2 : 0);
       if (is_of_contact(keys[i]) && !is_at_end(keys[i].t))
-        for (const Phase& phase : pattern_.phases)
-          if (!has_key_of_contact(phase.until))
-            add(Rank::slip, phase.until,
-                ", where no phase ends, and " + seconds(phase.until) +
-                    ", where a phase ends, has no such key",
+        for (auto end = std::upper_bound(ends_.begin(), ends_.end(), before);
+             end != ends_.end() && *end < after; ++end)
+          if (!has_key_of_contact(*end))
+            add(Rank::slip, *end,
+                ", but no phase ends there; the phase that ends at " + seconds(*end) +
+                    " has no key of the ZMP or of a foot",
                 kCoincidence);
       if (i == 0 || (!too_early && belongs_to_phase(keys[i]))) continue;
       const std::string lasts = ", so the segment before it lasts " + seconds(in) +
@@ -462,13 +482,15 @@ class Hypotheses::Maker {
     for (size_t i = 1; i < keys.size(); ++i) longest = std::max(longest, keys[i].t - keys[i - 1].t);
     for (size_t i = 1; i < keys.size(); ++i) {
       if (!is_repeated_key(i) || !seen.insert(keys[i].pointer).second) continue;
+      // All later keys move, so the error may come much later, but not before this segment.
+      if (!found_.touches(keys[i - 1].t, pattern_.duration())) continue;
       const double lasts = keys[i].t - keys[i - 1].t;
       for (const double meant : number_slips(lasts)) {
         if (meant < kShortestPhase || meant > longest) continue;
         made.push_back(
             {Rank::slip,
              {key_place(i), "the keyframe is " + seconds(lasts) + " after the one before it",
-              "with " + seconds(meant)},
+              "with " + seconds(meant) + " after it"},
              [pointer = keys[i].pointer, by = meant - lasts](Pattern& p) {
                double later = 0;
                for (Keyframe& key : p.keyframes) {
@@ -516,7 +538,7 @@ class Hypotheses::Maker {
     const Phase& flight = pattern_.phases[phase];
     if (flight.support != Support::none || flight.viip) return std::nullopt;
     const auto is_at = [&](size_t key, double t) {
-      return std::abs(pattern_.keyframes[key].t - t) < kSameTime * std::max(t, 1.0);
+      return std::abs(pattern_.keyframes[key].t - t) < kSameInstant;
     };
     for (size_t k = 0; k + 1 < keys.size(); ++k)
       if (is_at(keys[k], begin_of(phase)))
@@ -590,9 +612,10 @@ class Hypotheses::Maker {
       const double after =
           i + 1 < pattern_.phases.size() ? pattern_.phases[i + 1].until : until * 1e3;
       const std::optional<double> usual = usual_duration(i);
-      ends_at_keys(i, after, usual, made);
+      const bool is_usual = usual && std::abs(until - begin - *usual) < kUsualShare * *usual;
+      ends_at_keys(i, after, is_usual ? std::nullopt : usual, made);
       durations(i, made);
-      if (usual && std::abs(until - begin - *usual) < kUsualShare * *usual) continue;
+      if (is_usual) continue;
       std::vector<double> meant;
       if (usual) meant.push_back(std::round(1000 * (begin + *usual)) / 1000);
       const auto unlike = [&](double t) { return usual ? std::abs(t - begin - *usual) : 0.0; };
@@ -625,9 +648,9 @@ class Hypotheses::Maker {
     }
   }
 
-  // The end of a phase that has no key, but should perhaps be at a key of the ZMP or of a foot that
-  // is at the end of no phase.
-  void ends_at_keys(size_t phase, double after, std::optional<double> usual,
+  // Moves the end of a phase without such a key to a key of the ZMP or of a foot beside it, except
+  // to the end at which the phase has the duration `tried`.
+  void ends_at_keys(size_t phase, double after, std::optional<double> tried,
                     std::vector<Hypothesis>& made) const {
     const double begin = begin_of(phase), until = pattern_.phases[phase].until;
     if (phase + 1 == pattern_.phases.size() || has_key_of_contact(until)) return;
@@ -639,12 +662,12 @@ class Hypotheses::Maker {
       if (key.t <= begin + kShortestPhase || key.t >= after || is_at_end(key.t) ||
           !(is_of_contact(key) || (flight && key.cog_height)))
         continue;
-      // An end with which the phase is as long as similar ones is tried in any case.
-      if (usual && std::abs(key.t - begin - *usual) < kSameTime * key.t) continue;
+      if (tried && std::abs(key.t - begin - *tried) < kSameInstant) continue;
       made.push_back({Rank::slip,
                       {phase_place(phase),
-                       "the phase ends at " + seconds(until) + ", where no keyframe is, and " +
-                           key_place(k) + " is at " + seconds(key.t) + ", where no phase ends",
+                       "the phase ends at " + seconds(until) +
+                           ", where no keyframe moves the ZMP or a foot; " + key_place(k) +
+                           " does so at " + seconds(key.t) + ", where no phase ends",
                        "with an end at " + seconds(key.t)},
                       [phase, t = key.t](Pattern& p) { p.phases[phase].until = t; },
                       kCoincidence});
@@ -655,14 +678,13 @@ class Hypotheses::Maker {
   void durations(size_t phase, std::vector<Hypothesis>& made) const {
     const double until = pattern_.phases[phase].until, lasts = until - begin_of(phase);
     if (is_repeated(pattern_, pattern_.phases[phase].pointer)) return;
+    const long now = keys_at_ends(phase, 0);
     for (const double meant : number_slips(lasts)) {
       if (meant < kShortestPhase) continue;
       const Mend mend = [phase, later = meant - lasts](Pattern& p) {
         for (size_t k = phase; k < p.phases.size(); ++k) p.phases[k].until += later;
       };
-      Pattern mended = pattern_;
-      mend(mended);
-      const long more = keys_at_ends(mended) - keys_at_ends(pattern_);
+      const long more = keys_at_ends(phase, meant - lasts) - now;
       if (more <= 0) continue;
       made.push_back({Rank::slip,
                       {phase_place(phase),
@@ -813,8 +835,8 @@ class Hypotheses::Maker {
                        });
   }
 
-  // The ZMP has no key while the robot stands on one foot, so the keys of the phases before and
-  // after lead it. Tries keys of its own at both ends of the phase.
+  // In a single support without keys of the ZMP, the ZMP follows the keys of the neighbouring
+  // phases. Tries keys under the standing foot at both ends of the phase.
   void missing_zmp_keys(size_t phase, size_t wrong, std::vector<Hypothesis>& made) const {
     const Support support = pattern_.phases[phase].support;
     const double begin = begin_of(phase), until = pattern_.phases[phase].until;
@@ -1604,9 +1626,11 @@ class Hypotheses::Maker {
       for (const Pair& pair : unlike)
         made.push_back({Rank::exchange,
                         {place,
-                         pair.wrong + " is " + this->angle(pair.angle) + ", and " + pair.partner +
-                             " of the other side is no mirror image of it, as all other joints are",
-                         "with " + this->angle(pair.meant)},
+                         pair.wrong + " (" + this->angle(pair.angle) + ") and " + pair.partner +
+                             " (" + this->angle(joints.at(pair.partner)) +
+                             ") are not mirror images; all other pairs of joints in this posture "
+                             "are",
+                         "with " + pair.wrong + " at " + this->angle(pair.meant)},
                         [in, pair](Pattern& p) { in(p).at(pair.wrong) = pair.meant; }});
     };
     for (const auto& [name, joints] : pattern_.postures)
@@ -1620,11 +1644,29 @@ class Hypotheses::Maker {
 
   // ---- the ground
 
-  // Feet that stand above the ground or in it. Tries the height of the ground.
+  // Feet that stand above the ground or in it. Tries the height of the ground for the first ones
+  // that may cause the errors, and for all of them together: stairs that the world does not declare
+  // raise the foot of each step.
   void ground_heights(std::vector<Hypothesis>& made) const {
     if (!feet_) return;
-    for (const RaisedFoot& foot : raised_feet(model_, pattern_, *feet_))
-      made.push_back({Rank::geometry, {foot.place, foot.words, foot.instead}, foot.mend});
+    const std::vector<RaisedFoot> raised = raised_feet(model_, pattern_, *feet_);
+    size_t alone = 0;
+    for (const RaisedFoot& foot : raised)
+      if (alone < kRaisedAlone && reaches(static_cast<size_t>(feet_->phase(foot.begin)))) {
+        made.push_back({Rank::geometry, {foot.place, foot.words, foot.instead}, foot.mend});
+        ++alone;
+      }
+    const auto is_relative = [](const RaisedFoot& foot) { return foot.relative; };
+    if (alone == 0 || raised.size() == 1 || std::any_of(raised.begin(), raised.end(), is_relative))
+      return;
+    made.push_back({Rank::geometry,
+                    {raised.front().place,
+                     raised.front().words + "; this is the first of " +
+                         std::to_string(raised.size()) + " such heights",
+                     "with all of them on the declared ground"},
+                    [raised](Pattern& p) {
+                      for (const RaisedFoot& foot : raised) foot.mend(p);
+                    }});
   }
 
   // ---- missing or superfluous parts
@@ -1736,8 +1778,8 @@ class Hypotheses::Maker {
     };
     const auto add = [&](size_t key, const std::string& written, const std::string& instead,
                          Mend mend) {
-      // Any wrong number is harmless if its key is left out. So this is only named if no other
-      // number in its place is enough, and before any other pace.
+      // Leaving out a key hides any wrong number in it. So this comes after all corrections of
+      // numbers, and before the other changes of Rank::pace.
       made.push_back({Rank::pace, {key_place(key), written, instead}, std::move(mend), -1});
       made.back().only_if_enough = true;
     };
@@ -2058,6 +2100,8 @@ class Hypotheses::Maker {
   const TrialOutcome& found_;
   std::vector<WrittenValue> values_;
   std::optional<FootPlan> feet_ = {};
+  std::vector<double> ends_;      // of the phases, sorted [s]
+  std::vector<double> contacts_;  // of the keys for which is_of_contact(), sorted [s]
 };
 
 Hypotheses::Hypotheses(const RobotModel& model, const Pattern& pattern, const TrialOutcome& found)

@@ -143,7 +143,10 @@ class Search {
   }
 
   void test(std::vector<Hypothesis> hypotheses) {
-    if (hypotheses.size() > kTriedOfOneKind) hypotheses.resize(kTriedOfOneKind);
+    if (hypotheses.size() > kTriedOfOneKind) {
+      hypotheses.resize(kTriedOfOneKind);
+      trials_.leave_out();
+    }
     std::vector<Mend> mends;
     for (const Hypothesis& h : hypotheses) mends.push_back(h.mend);
     const std::vector<TrialOutcome> outcomes = trials_.after(pattern_, mends);
@@ -528,7 +531,7 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
     found = left;
   }
   result.trials = trials.made();
-  result.complete = found.good() || !trials.ended();
+  result.complete = found.good() || !(trials.ended() || trials.left_out());
   return result;
 }
 

@@ -32,7 +32,8 @@ struct Explanations {
   std::vector<Explanation> found;
   int trials = 0;  ///< number of versions that were sampled and checked; a version with more
                    ///< samples, or with legs of fewer than six joints, counts as several
-  /// If false, the bound on trials was reached, errors remain, and more could have been tried.
+  /// If false, errors remain, and more could have been tried: the bound on trials was reached, or
+  /// there were too many possible mistakes of one kind.
   bool complete = true;
 };
 

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "ayumi/author/generate/pattern_builder.hpp"
 #include "ayumi/base/error.hpp"
@@ -112,30 +113,38 @@ TrialOutcome Trials::of(const Pattern& pattern, bool exact) const {
 
 std::vector<TrialOutcome> Trials::after(const Pattern& pattern, const std::vector<Mend>& mends) {
   std::vector<TrialOutcome> outcomes(mends.size());
-  std::vector<std::optional<Pattern>>
-      mended;  // without a pattern that cannot be mended in this way
-  size_t tried = 0;
-  for (; tried < mends.size(); ++tried) {
-    mended.emplace_back(pattern);
-    try {
-      mends[tried](*mended.back());
-    } catch (const Error&) {
-      mended.back().reset();
-    }
-    // A trial takes as long as the motion that is tried.
-    const double cost = static_cast<double>(quick_cost(mended.back() ? *mended.back() : pattern)) *
-                        (exact_ ? ticks_ : 1);
-    if (made_ + cost > most_) break;
-    made_ += static_cast<int>(cost);
-  }
-  if (tried < mends.size()) ended_ = true;
-  for (size_t begin = 0; begin < tried; begin += kTrialsBetweenReports) {
+  std::vector<std::pair<size_t, Pattern>> mended;  // few at once: a long pattern is large
+  const auto try_mended = [&] {
     report(progress_, {"look for the cause", -1, ""});  // may stop the search
     std::atomic<bool> stop = false;
-    in_parallel(std::min(kTrialsBetweenReports, tried - begin), threads_, stop, [&](size_t i) {
-      if (mended[begin + i]) outcomes[begin + i] = of(*mended[begin + i]);
-    });
+    in_parallel(mended.size(), threads_, stop,
+                [&](size_t i) { outcomes[mended[i].first] = of(mended[i].second); });
+    mended.clear();
+  };
+  for (size_t i = 0; i < mends.size(); ++i) {
+    if (made_ >= most_) {
+      ended_ = true;
+      break;
+    }
+    std::optional<Pattern> version(pattern);  // empty where the change cannot be made
+    try {
+      mends[i](*version);
+    } catch (const Error&) {
+      version.reset();
+    }
+    // The cost of a trial grows with the duration of the motion that is tried. A change that
+    // lengthens the motion may be too costly where a later one is not.
+    const double cost =
+        static_cast<double>(quick_cost(version ? *version : pattern)) * (exact_ ? ticks_ : 1);
+    if (made_ + cost > most_) {
+      ended_ = true;
+      continue;
+    }
+    made_ += static_cast<int>(cost);
+    if (version) mended.emplace_back(i, std::move(*version));
+    if (mended.size() == kTrialsBetweenReports) try_mended();
   }
+  if (!mended.empty()) try_mended();
   return outcomes;
 }
 

@@ -77,9 +77,12 @@ class Trials {
   /// Whether the number of trials ended the search while something was left to try.
   bool ended() const { return ended_; }
   int made() const { return made_; }
+  /// Notes that the search leaves out changes that could have been tried.
+  void leave_out() { left_out_ = true; }
+  bool left_out() const { return left_out_; }
 
  private:
-  /// Number of trials as which a quick trial of a pattern counts.
+  /// How many trials one quick trial of this pattern counts as.
   int quick_cost(const Pattern& pattern) const;
 
   const RobotModel& model_;
@@ -87,9 +90,9 @@ class Trials {
   const Progress& progress_;
   int threads_ = 0, most_ = 0;
   int ticks_ = 1;     ///< ticks of the servo in one time step of a quick trial
-  int leg_cost_ = 1;  ///< number of trials as which a trial counts because of short legs
+  int leg_cost_ = 1;  ///< how many trials one trial counts as if a leg has fewer than six joints
   int made_ = 0;
-  bool ended_ = false, exact_ = false;
+  bool ended_ = false, left_out_ = false, exact_ = false;
 };
 
 }  // namespace ayumi

@@ -57,23 +57,27 @@ class RaisedFeet {
            " m, but the ground is at " + text::brief(ground(side, t)) + " m there";
   }
 
-  // The foot is at a written height at this time.
+  // Reports the foot if it is not on the ground at t; `written` is the number that states its
+  // height.
   void look(const std::string& place, Side side, double t,
-            const std::function<double&(Pattern&)>& written) {
+            const std::function<double&(Pattern&)>& written, int phase, bool relative) {
     if (stands(side, t)) return;
     found_.push_back(
         {place, words(side, t), "with a height of " + text::brief(ground(side, t)) + " m",
-         [written, by = ground(side, t) - height(side, t)](Pattern& p) { written(p) += by; }});
+         [written, by = ground(side, t) - height(side, t)](Pattern& p) { written(p) += by; },
+         feet_.begin(phase), relative});
   }
 
   void landings() {
     for (size_t i = 0; i < pattern_.phases.size(); ++i)
       if (const auto& swing = pattern_.phases[i].swing; swing && !pattern_.phases[i].viip)
-        look(pointer_of_phase(pattern_, i), swing->foot, pattern_.phases[i].until,
-             [i](Pattern& p) -> double& {
-               Swing& to = *p.phases[i].swing;
-               return to.step ? to.step->up : to.to.position.z();
-             });
+        look(
+            pointer_of_phase(pattern_, i), swing->foot, pattern_.phases[i].until,
+            [i](Pattern& p) -> double& {
+              Swing& to = *p.phases[i].swing;
+              return to.step ? to.step->up : to.to.position.z();
+            },
+            static_cast<int>(i), swing->step.has_value());
   }
 
   void standing_keys() {
@@ -82,8 +86,10 @@ class RaisedFeet {
         const auto s = static_cast<size_t>(index(side));
         const double t = pattern_.keyframes[i].t;
         if (pattern_.keyframes[i].feet[s] && supports(feet_.support(t), side))
-          look(pointer_of_keyframe(pattern_, i), side, t,
-               [i, s](Pattern& p) -> double& { return p.keyframes[i].feet[s]->position.z(); });
+          look(
+              pointer_of_keyframe(pattern_, i), side, t,
+              [i, s](Pattern& p) -> double& { return p.keyframes[i].feet[s]->position.z(); },
+              std::max(0, feet_.phase(t) - 1), false);
       }
   }
 
@@ -105,10 +111,14 @@ class RaisedFeet {
         Foothold old = *pattern_.keyframes[*last].feet[s];
         old.position = feet_.pose(side, feet_.begin(static_cast<int>(i) - 1)).translation();
         found_.push_back({pointer_of_keyframe(pattern_, *last),
-                          words(side, t) + " at " + text::brief(t) +
-                              " s, when it begins to carry the robot; this is its last key before",
-                          "with a key of this foot at its old place at this time",
-                          [t, s, old](Pattern& p) { add_key(p, t, s, old); }});
+                          std::string("this is the ") + name_of(side) +
+                              " foot's last key before it carries the robot at " + text::brief(t) +
+                              " s, and leaves it at z = " + text::brief(height(side, t)) +
+                              " m; the ground there is at " + text::brief(ground(side, t)) + " m",
+                          "with one more key at " + text::brief(t) +
+                              " s that puts the foot back to its old place",
+                          [t, s, old](Pattern& p) { add_key(p, t, s, old); },
+                          feet_.begin(static_cast<int>(i) - 1)});
       }
   }
 

@@ -17,6 +17,8 @@ struct RaisedFoot {
   std::string words;    ///< what is written, and the height of the ground there
   std::string instead;  ///< the remedy
   std::function<void(Pattern&)> mend;  ///< puts the foot on the ground
+  double begin = 0;       ///< beginning of the phase that leads the foot to this height [s]
+  bool relative = false;  ///< whether the mend also moves all later steps
 };
 
 /// The landings and keys that put a foot more than 1 mm above the ground or below it, and the feet

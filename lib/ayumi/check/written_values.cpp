@@ -24,7 +24,7 @@ namespace {
 // Two numbers whose difference is smaller than this count as equal, in any unit. Chosen: the
 // conversion of degrees and the rounding of limits cause smaller differences.
 constexpr double kSame = 1e-6;
-// A value below this share of its unit has no sign that could be wrong: it is nearly in the middle.
+// The sign of a value below this share of its unit is not tried, because the value is nearly 0.
 // Chosen: 5 mm for a leg of 0.25 m, 1 deg.
 constexpr double kLeastSigned = 0.02;
 

@@ -229,13 +229,9 @@ WalkParameters stair_defaults(const RobotModel& model, double rise) {
   p.stride = 1e-3 * std::ceil(1e3 * (sole.front + sole.back + 2 * kStairDefaultClearance));
   p.period = 0.05 * std::round(22 * p.period);
   p.lift = to_tenth_millimetre(rise + 0.006 * size_beside_hoap1(model));
-  RobotData data(model);
-  update_positions(model, model.rest_state(), data);
-  const Vector3d hip = data.pose(model.dofs()[model.leg(Side::left).front()].body).translation();
-  const double reach = (sole_pose(model, data, Side::left).translation() - hip).norm();
   const double apart = 0.5 * p.stride, leg = kStairLeg * leg_length(model);
   const double wanted = std::sqrt(std::max(0.0, leg * leg - apart * apart)) - 0.5 * rise;
-  p.cog_height = default_cog_height(model, {}) - std::max(0.0, reach - wanted);
+  p.cog_height = default_cog_height(model, {}) - std::max(0.0, home_reach(model) - wanted);
   return p;
 }
 
