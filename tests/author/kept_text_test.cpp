@@ -186,7 +186,7 @@ const std::string kSteps = R"({ "format": "ayumi.pattern/1", "robot": "hoap1",
     { "repeat": 2, "phases": [ // two steps
       { "duration": 0.5, "support": "right" }, { "duration": 0.3, "support": "both" } ] },
     { "until": 3.2, "support": "both" } ],
-  "keyframes": [ { "t": 0, "zmp": "center" },
+  "keyframes": [ { "t": 0, "zmp": "center", "cog": { "height": 0.235 } },
     { "t": 0.8, "zmp": "right", "feet": { "left": [0, 0.039, 0] } }, // the other one stands
     { "repeat": 2, "keyframes": [
       { "after": 0.25, "feet": { "left": [0, 0.039, "${lift}*2"] } }, // up
