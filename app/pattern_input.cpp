@@ -79,19 +79,26 @@ std::filesystem::path file_or_bundled(const std::filesystem::path& file) {
 }  // namespace
 
 Pattern read_given_pattern(const std::filesystem::path& file,
-                           const std::map<std::string, double>& set) {
-  if (file != "-") return read_pattern(file_or_bundled(file), set);
-  return pattern_of_text(read_input(file, kLargestPattern), "standard input", set);
+                           const std::map<std::string, double>& set, std::string* text) {
+  if (file != "-") {
+    const std::filesystem::path found = file_or_bundled(file);
+    Pattern pattern = read_pattern(found, set);
+    if (text) *text = read_input(found, kLargestPattern);
+    return pattern;
+  }
+  const std::string words = read_input(file, kLargestPattern);
+  if (text) *text = words;
+  return pattern_of_text(words, "standard input", set);
 }
 
 Task load_pattern(const Context& context, const std::filesystem::path& file,
-                  const PatternOptions& options, bool meshes) {
+                  const PatternOptions& options, bool meshes, std::string* text) {
   const TaskOptions chosen = {.profile = options.profile,
                               .robot = options.robot,
                               .robots = robot_search(context),
                               .meshes = meshes,
                               .threads = context.threads};
-  return load_task(read_given_pattern(file, read_pairs(options.set, "--set")), chosen,
+  return load_task(read_given_pattern(file, read_pairs(options.set, "--set"), text), chosen,
                    context.progress());
 }
 

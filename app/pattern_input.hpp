@@ -29,14 +29,16 @@ std::string read_input(const std::filesystem::path& file, size_t most = size_t{1
 
 /// The pattern of a file; `-` is standard input, and then the files that the pattern names are
 /// searched in the working folder. A file that does not exist but is named with a folder
-/// ("patterns/hoap1_walk.json") is searched in the bundled data.
+/// ("patterns/hoap1_walk.json") is searched in the bundled data. `text` receives the text of the
+/// pattern, which standard input gives only once.
 Pattern read_given_pattern(const std::filesystem::path& file,
-                           const std::map<std::string, double>& set = {});
+                           const std::map<std::string, double>& set = {},
+                           std::string* text = nullptr);
 
 /// Reads the pattern (as read_given_pattern) and its robot and samples it at the robot's servo
 /// period.
 Task load_pattern(const Context& context, const std::filesystem::path& file,
-                  const PatternOptions& options, bool meshes = false);
+                  const PatternOptions& options, bool meshes = false, std::string* text = nullptr);
 
 /// The robot in the form in which a pattern names it. A path in the working folder gets a slash,
 /// which a bundled name does not have.

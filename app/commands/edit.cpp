@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "ayumi/author/edit/gait_cycle.hpp"
 #include "ayumi/base/error.hpp"
@@ -26,7 +27,6 @@ namespace ayumi::app {
 
 namespace {
 
-namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 struct EditCommand {
@@ -65,41 +65,44 @@ ForceRange force_range(const CommandSeries& series) {
   return {least->fz, most->fz};
 }
 
-// An edited pattern, and its text if it is the text of its author with the changes.
+// A pattern that was read, with the text of its author.
+struct Given {
+  Task task;
+  std::string text;
+};
+
+// An edited pattern. `text` is the text of the author with the changes; it is empty if the pattern
+// is written anew.
 struct Edited {
   Pattern pattern;
-  std::string text;               ///< empty if the pattern is written anew
+  std::string text;
   std::vector<std::string> lost;  ///< what of the author's text is lost, such as "3 comments"
 };
 
 // Writes the edit into the text of the pattern that was read, if this is possible. `others` are
 // further patterns of which the result has values only.
-Edited in_own_text(const EditCommand& options, const Pattern& given, const Pattern& edited,
-                   double time_scale = 1, const std::vector<std::string>& others = {}) {
+Edited in_own_text(const EditCommand& options, const Given& given, const Pattern& edited,
+                   double time_scale = 1, const std::vector<Given>& others = {}) {
   Edited result{edited, "", {}};
-  std::string before, after;
-  if (const std::string& file = given.file; fs::is_regular_file(file)) {
-    before = read_input(file, kLargestPattern);
-    RewriteOptions rewrite;
-    rewrite.out = options.out;
-    rewrite.set = read_pairs(options.input.set, "--set");
-    rewrite.time_scale = time_scale;
-    if (auto own = rewritten(before, given, edited, rewrite))
-      result = {std::move(own->pattern), std::move(own->text), {}};
-  }
+  RewriteOptions rewrite;
+  rewrite.out = options.out;
+  rewrite.set = read_pairs(options.input.set, "--set");
+  rewrite.time_scale = time_scale;
+  if (auto own = rewritten(given.text, given.task.pattern, edited, rewrite))
+    result = {std::move(own->pattern), std::move(own->text), {}};
   if (result.text.empty()) {
     for (Phase& phase : result.pattern.phases) phase.pointer.clear();
     for (Keyframe& key : result.pattern.keyframes) key.pointer.clear();
   }
-  after = result.text.empty() ? pattern_text(edited) : result.text;
-  const auto add_lost = [&](const std::string& file, const std::string& text,
-                            const std::string& kept) {
-    for (const std::string& mark : lost_marks(text, kept))
-      result.lost.push_back(mark + " of " + file);
+  const auto add_lost = [&](const Given& from, const std::string& kept) {
+    for (const std::string& mark : lost_marks(from.text, kept))
+      result.lost.push_back(mark + " of " + from.task.pattern.file);
   };
-  if (!before.empty()) add_lost(given.file, before, after);
-  for (const std::string& file : others)
-    if (fs::is_regular_file(file)) add_lost(file, read_input(file, kLargestPattern), "{}");
+  add_lost(given, result.text.empty() ? pattern_text(edited) : result.text);
+  // The text of a motion that follows itself is there once.
+  std::set<std::string> told = {given.text};
+  for (const Given& other : others)
+    if (told.insert(other.text).second) add_lost(other, "{}");
   return result;
 }
 
@@ -145,24 +148,32 @@ void write_edited(Context& context, const EditCommand& options, const Edited& ed
   context.exit_code = result.report.consistent ? 0 : 1;
 }
 
-Task load(const Context& context, const EditCommand& options) {
+Given load_text(const Context& context, const EditCommand& options, const std::string& file) {
+  std::string text;
+  Task task = load_pattern(context, file, options.input, false, &text);
+  return {std::move(task), std::move(text)};
+}
+
+Given load(const Context& context, const EditCommand& options) {
   refuse_unknown_tolerances(options.tolerances);
   refuse_overwriting(context, options.out);
-  return load_pattern(context, options.pattern, options.input);
+  return load_text(context, options, options.pattern);
 }
 
 void bake(Context& context, const EditCommand& options) {
-  const Task input = load(context, options);
+  const Given given = load(context, options);
+  const Task& input = given.task;
   const Edited edited = in_own_text(
-      options, input.pattern,
+      options, given,
       baked(input.robot, input.pattern, input.series, table_beside(options.out).string()));
   write_edited(context, options, edited, check_edited(context, options, input, edited), "",
                Json{{"rows", input.series.samples.size()}});
 }
 
 void mirror(Context& context, const EditCommand& options) {
-  const Task input = load(context, options);
-  const Edited edited = in_own_text(options, input.pattern, mirrored(input.robot, input.pattern));
+  const Given given = load(context, options);
+  const Task& input = given.task;
+  const Edited edited = in_own_text(options, given, mirrored(input.robot, input.pattern));
   write_edited(context, options, edited, check_edited(context, options, input, edited), "",
                Json::object());
 }
@@ -224,17 +235,38 @@ std::string in_words(const std::vector<BindingLimit>& limits) {
   return out;
 }
 
-void retime_locally(Context& context, const EditCommand& options, const Task& input) {
+// The timing of a local retime in words for people.
+std::string in_words(const LocalPace& pace, bool pauses_kept) {
+  std::string out = "  the motion takes " + text::brief(pace.scale) + " times its original time\n";
+  if (pace.uniform)
+    out += std::string("  this is the uniform pace") +
+           (pauses_kept ? ", with pauses of their original length" : "") +
+           ", because the robot falls in open loop with the local timings that were tried\n";
+  else
+    out += "  share of the time in which each limit decides the pace: " + in_words(pace.binding) +
+           "\n";
+  if (!pace.stands.value_or(true))
+    out +=
+        "  caution: in open loop the robot falls with this timing. At the uniform pace it stands, "
+        "but that motion does not pass the check\n";
+  if (!pace.not_simulated.empty())
+    out += "  caution: whether the robot stands with this timing was not tried: " +
+           pace.not_simulated + "\n";
+  return out;
+}
+
+void retime_locally(Context& context, const EditCommand& options, const Given& given) {
+  const Task& input = given.task;
   LocalRetimeOptions local;
   local.path.check = check_options(input, options.tolerances);
-  // A margin that the user chooses may be too small to stand.
+  // A margin that the user chose is kept, so the motion is not simulated.
   if (options.margin >= 0)
     local.path.most_margin = options.margin;
   else
     local.world = input.pattern.world;
   local.keep_pauses = options.keep_pauses;
   local.dt = input.series.dt;
-  LocalPace pace = fastest_local_pace(
+  const LocalPace pace = fastest_local_pace(
       input.robot, input.pattern, table_beside(options.out).string(), local, context.progress());
   if (!pace.found)
     fail(ErrorCode::solver, {options.pattern},
@@ -242,33 +274,22 @@ void retime_locally(Context& context, const EditCommand& options, const Task& in
              (pace.by_posture ? ". Another timing cannot help, because a posture is wrong"
                               : ". More time alone is not enough") +
              ". Try `ayumi repair`");
-  const Edited edited = in_own_text(options, input.pattern, pace.pattern);
-  Result result;
-  result.caution = input.caution;
-  result.series = std::move(pace.series);
-  result.report = std::move(pace.report);
-  result.check = check_parts(result.report, input.robot);
+  const Edited edited =
+      in_own_text(options, given, pace.pattern, pace.uniform ? pace.path_scale : 1);
+  const Result result = check_edited(context, options, input, edited);
   const ForceRange force = force_range(result.series);
   Json limits = Json::array();
   for (const BindingLimit& limit : pace.binding)
     limits.push_back({{"limit", limit.limit.empty() ? Json(nullptr) : Json(limit.limit)},
                       {"share", limit.share}});
   write_edited(
-      context, options, edited, result,
-      "  the motion takes " + text::brief(pace.scale) + " times its original time\n" +
-          (pace.binding.empty()
-               ? "  this is the uniform pace, because the robot falls in open loop with the local "
-                 "timings that were tried\n"
-               : "  share of the time in which each limit decides the pace: " +
-                     in_words(pace.binding) + "\n") +
-          (pace.stands ? ""
-                       : "  in open loop the robot falls with this timing, but not at the uniform "
-                         "pace\n"),
+      context, options, edited, result, in_words(pace, options.keep_pauses),
       Json{{"scale", pace.scale},
            {"path_scale", pace.path_scale},
            {"rounds", pace.rounds},
            {"limited_by", limits},
-           {"stands_as_uniform", pace.stands},
+           {"uniform", pace.uniform},
+           {"stands_as_uniform", pace.stands ? Json(*pace.stands) : Json(nullptr)},
            {"zmp_margin_m", {{"after", result.report.summary[FindingKind::support_margin]}}},
            {"fz_N", {{"after", {force.least, force.most}}}}});
 }
@@ -288,15 +309,16 @@ void retime(Context& context, const EditCommand& options) {
     fail(ErrorCode::usage,
          "edit retime: --keep-pauses works only together with --to-limits --local; add both, or "
          "leave --keep-pauses out");
-  const Task input = load(context, options);
-  if (options.local) return retime_locally(context, options, input);
+  const Given given = load(context, options);
+  const Task& input = given.task;
+  if (options.local) return retime_locally(context, options, given);
   const ConsistencyReport before =
       check_consistency(input.robot, input.series, check_options(input, options.tolerances));
   FastestPace pace;
   if (options.to_limits) pace = limits_of(context, options, input);
   const double scale = options.to_limits ? pace.scale : options.scale;
   const Edited edited =
-      in_own_text(options, input.pattern, retimed(input.robot, input.pattern, scale), scale);
+      in_own_text(options, given, retimed(input.robot, input.pattern, scale), scale);
   const Result result = check_edited(context, options, input, edited);
   const ForceRange force = force_range(input.series);
   const FastestPace* const found = options.to_limits ? &pace : nullptr;
@@ -354,20 +376,19 @@ void join(Context& context, const EditCommand& options) {
          "edit concat, edit blend: give at least two patterns, in the order in which they are "
          "played");
   refuse_overwriting(context, options.out);
-  Task input = load_pattern(context, options.patterns.front(), options.input);
-  const Pattern given = input.pattern;
-  std::vector<std::string> others;
+  const Given given = load_text(context, options, options.patterns.front());
+  Task input = given.task;
+  std::vector<Given> others;
   Json joins = Json::array();
   std::string reason;
   for (size_t i = 1; i < options.patterns.size(); ++i) {
-    const Task next = load_pattern(context, options.patterns[i], options.input);
+    const Task& next = others.emplace_back(load_text(context, options, options.patterns[i])).task;
     if (next.robot.description().sha256 != input.robot.description().sha256)
       fail(ErrorCode::bad_pattern, {options.patterns[i], "/robot"},
            "the robot is '" + next.pattern.robot + "', but the robot of " +
                options.patterns.front() + " is '" + input.pattern.robot +
                "'; give patterns of the same robot");
     joins.push_back(input.series.duration());
-    others.push_back(next.pattern.file);
     add_caution(input.caution, next.caution);
     CommandSeries series;
     Pattern both = joined_pattern(context, options, input, {next.pattern, next.series},
@@ -403,7 +424,8 @@ void loop_cycle(Context& context, const EditCommand& options) {
     fail(ErrorCode::usage,
          "edit loop: --cycle repeats steps without a stop, so there is no transition; leave --over "
          "out");
-  const Task input = load(context, options);
+  const Given given = load(context, options);
+  const Task& input = given.task;
   const MotionPart walk{input.pattern, input.series};
   const GaitCycle cycle = best_cycle(input.robot, walk);
   if (!cycle.gap.closed)
@@ -437,7 +459,7 @@ void loop_cycle(Context& context, const EditCommand& options) {
   const double dt = input.series.dt;
   const double begin = static_cast<double>(cycle.begin) * dt;
   const double end = static_cast<double>(cycle.end) * dt;
-  const Edited edited = in_own_text(options, input.pattern, all);
+  const Edited edited = in_own_text(options, given, all);
   write_edited(
       context, options, edited, check_edited(context, options, input, edited),
       "  the cycle is from " + text::fixed(begin, 3) + " to " + text::fixed(end, 3) +
@@ -460,7 +482,8 @@ void loop(Context& context, const EditCommand& options) {
     fail(ErrorCode::usage,
          "edit loop: --alone works only together with --cycle; add --cycle, or leave --alone out");
   if (options.cycle) return loop_cycle(context, options);
-  Task input = load(context, options);
+  const Given given = load(context, options);
+  Task input = given.task;
   const LoopGap before = loop_gap(input.robot, {input.pattern, input.series});
   std::string reason;
   const Pattern once = input.pattern;
@@ -513,7 +536,7 @@ void loop(Context& context, const EditCommand& options) {
     input.pattern = std::move(more);
     input.series = std::move(series);
   }
-  const Edited edited = in_own_text(options, once, input.pattern);
+  const Edited edited = in_own_text(options, given, input.pattern);
   write_edited(context, options, edited, check_edited(context, options, input, edited),
                std::string("  the end of the motion is the same as its beginning") +
                    (before.closed ? "" : " after a transition") + ": " + gap_words(closed) + "\n" +
@@ -526,10 +549,10 @@ void loop(Context& context, const EditCommand& options) {
 }
 
 void alternate(Context& context, const EditCommand& options) {
-  const Task input = load(context, options);
-  const Edited edited =
-      in_own_text(options, input.pattern,
-                  alternated(input.robot, input.pattern, options.times, !options.open_end));
+  const Given given = load(context, options);
+  const Task& input = given.task;
+  const Edited edited = in_own_text(
+      options, given, alternated(input.robot, input.pattern, options.times, !options.open_end));
   write_edited(context, options, edited, check_edited(context, options, input, edited), "",
                Json{{"times", options.times}});
 }
@@ -546,9 +569,10 @@ void edit_key(Context& context, const EditCommand& options) {
          "move a copy of it with --copy, or exchange left and right with --mirror");
   if (key.copy && !key.to)
     fail(ErrorCode::usage, "edit key: --copy needs the time of the copy; give --to T or --by S");
-  const Task input = load(context, options);
+  const Given given = load(context, options);
+  const Task& input = given.task;
   const Edited edited =
-      in_own_text(options, input.pattern, with_key_edited(input.robot, input.pattern, key));
+      in_own_text(options, given, with_key_edited(input.robot, input.pattern, key));
   write_edited(context, options, edited, check_edited(context, options, input, edited), "",
                Json{{"at_s", key.at},
                     {"to_s", key.to ? Json(*key.to) : Json(nullptr)},
@@ -560,8 +584,9 @@ void ramp(Context& context, const EditCommand& options) {
   if (options.ramps.in <= 0 && options.ramps.out <= 0)
     fail(ErrorCode::usage,
          "edit ramp: both --in and --back are 0; set at least one of them above 0 s");
-  const Task input = load(context, options);
-  const Edited edited = in_own_text(options, input.pattern,
+  const Given given = load(context, options);
+  const Task& input = given.task;
+  const Edited edited = in_own_text(options, given,
                                     ramped(input.robot, {input.pattern, input.series},
                                            options.ramps, table_beside(options.out).string()));
   write_edited(context, options, edited, check_edited(context, options, input, edited), "",

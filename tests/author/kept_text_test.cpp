@@ -105,6 +105,36 @@ TEST(KeptText, AnotherPaceMultipliesTimes) {
                                 {"\"at\": 2", "\"at\": 2.5"}}));
 }
 
+// Times of the rounds of a block are rounded in different places.
+TEST(KeptText, BlocksStayAtAnyPace) {
+  for (const double scale : {1.0 / 3, 0.333333333, 0.87654321, M_PI}) {
+    const RewrittenPattern result = kept(retimed(hoap1(), read(kAuthored), scale), scale);
+    EXPECT_TRUE(lost_marks(kAuthored, result.text).empty()) << result.text;
+    EXPECT_NE(result.text.find("\"(${lift_off})*"), std::string::npos) << result.text;
+  }
+}
+
+TEST(KeptText, AByteOrderMarkStays) {
+  const std::string mark = "\xEF\xBB\xBF";
+  const Pattern walk = read(mark + kAuthored);
+  const auto result = rewritten(mark + kAuthored, walk, retimed(hoap1(), walk, 1.25),
+                                {.out = "out.json", .time_scale = 1.25});
+  ASSERT_TRUE(result.has_value());
+  EXPECT_EQ(result->text, mark + kept(retimed(hoap1(), read(kAuthored), 1.25), 1.25).text);
+  EXPECT_TRUE(lost_marks(mark + kAuthored, result->text).empty());
+}
+
+// Marks are compared by their words: new ones do not replace lost ones.
+TEST(KeptText, AnotherCommentIsNotTheLostOne) {
+  const std::string before = R"({ "phases": [ { "until": 1 } ], // one
+    "keyframes": [ {"t": "${a}"}, {"t": "${a}*2"}, {"t": "${b}"} ] })";
+  EXPECT_EQ(lost_marks(before, "// Written with the parameters a = 1.\n{}"),
+            (std::vector<std::string>{"1 comment", "3 expressions"}));
+  const std::string copied = R"x({ // one
+    "keyframes": [ {"t": "${a}"}, {"t": "${a}"}, {"t": "-(${b})"} ] })x";
+  EXPECT_EQ(lost_marks(before, copied), std::vector<std::string>{"1 expression"});
+}
+
 TEST(KeptText, AKeyIsMovedAndCopiedWithItsWords) {
   const Pattern walk = read(kAuthored);
   EXPECT_EQ(kept(with_key_edited(hoap1(), walk, {.at = 3, .to = 3.5})).text,
@@ -147,6 +177,63 @@ TEST(KeptText, ATableTakesTheKeysAway) {
   EXPECT_NE(result->text.find("// a bow"), std::string::npos) << result->text;
   EXPECT_NE(result->text.find("\"table\": \"out.csv\""), std::string::npos) << result->text;
   EXPECT_EQ(lost_marks(kBow, result->text), std::vector<std::string>{"1 comment"});
+}
+
+// Two steps in place by keys of a foot, in a block that repeats.
+const std::string kSteps = R"({ "format": "ayumi.pattern/1", "robot": "hoap1",
+  "parameters": { "lift": 0.012 },
+  "phases": [ { "until": 0.8, "support": "both" },
+    { "repeat": 2, "phases": [ // two steps
+      { "duration": 0.5, "support": "right" }, { "duration": 0.3, "support": "both" } ] },
+    { "until": 3.2, "support": "both" } ],
+  "keyframes": [ { "t": 0, "zmp": "center", "cog": { "height": 0.235 } },
+    { "t": 0.8, "zmp": "right", "feet": { "left": [0, 0.039, 0] } }, // the other one stands
+    { "repeat": 2, "keyframes": [
+      { "after": 0.25, "feet": { "left": [0, 0.039, "${lift}*2"] } }, // up
+      { "after": 0.25, "zmp": "right", "feet": { "left": [0, 0.039, 0] } },
+      { "after": 0.3, "zmp": "right", "feet": { "left": [0, 0.039, 0] } } ] },
+    { "t": 3.2, "zmp": "center" } ] })";
+
+TEST(KeptText, ParametersBlocksAndKeysOfFeetStayInAChain) {
+  const Pattern one = read(kSteps);
+  const CommandSeries series = sample(hoap1(), one);
+  for (const double over : {0.0, 0.5}) {
+    const Pattern both = chained(hoap1(), {one, series}, {one, series}, over);
+    const auto result = rewritten(kSteps, one, both, {.out = "out.json"});
+    ASSERT_TRUE(result.has_value()) << over;
+    EXPECT_TRUE(lost_marks(kSteps, result->text).empty()) << result->text;
+    EXPECT_EQ(result->pattern.phases.size(), both.phases.size());
+  }
+  const Pattern table = baked(hoap1(), one, series, "out.csv");
+  const auto result = rewritten(kSteps, one, table, {.out = "out.json"});
+  ASSERT_TRUE(result.has_value());
+  EXPECT_NE(result->text.find("// two steps"), std::string::npos) << result->text;
+  EXPECT_NE(result->text.find("\"parameters\""), std::string::npos) << result->text;
+}
+
+// The standing foot rests at the join, whatever interpolation the keys have.
+TEST(KeptText, AKeyedFootRestsAtTheJoin) {
+  for (const char* const interpolation : {"spline", "cubic", "minimum_jerk"}) {
+    Pattern one = read(kSteps);
+    one.interpolation = std::string(interpolation) == "spline"  ? Interpolation::spline
+                        : std::string(interpolation) == "cubic" ? Interpolation::cubic
+                                                                : Interpolation::minimum_jerk;
+    // In each step the foot moves by its own keys only.
+    for (Keyframe& key : one.keyframes)
+      if (key.feet[0] && key.feet[0]->position.z() == 0)
+        key.interpolation = Interpolation::minimum_jerk;
+    for (const double over : {0.0, 0.5}) {
+      const CommandSeries series = sample(hoap1(), one, {.dt = 0.005});
+      const Pattern both = chained(hoap1(), {one, series}, {one, series}, over);
+      const CommandSeries all = sample(hoap1(), both, {.dt = 0.005});
+      for (const CommandSample& sample : all.samples)
+        if (supports(sample.support, Side::left)) {
+          EXPECT_LT((sample.feet[0].translation() - all.samples[0].feet[0].translation()).norm(),
+                    1e-9)
+              << interpolation << " " << over;
+        }
+    }
+  }
 }
 
 // Rounds of a block that change in different ways have no common text.

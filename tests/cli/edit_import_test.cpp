@@ -3,6 +3,7 @@
 #include <signal.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -236,9 +237,24 @@ TEST_F(Edit, ALoopKeepsTheKeysOfAFoot) {
 TEST_F(Edit, SaysWhatIsLost) {
   ASSERT_EQ(ayumi({"new", "kick", "--robot", "hoap1", "-o", "kick.json"}).exit_code, 0);
   const Output out = ayumi({"edit", "concat", "kick.json", "kick.json", "-o", "two.json"});
-  EXPECT_EQ(out.out.find("not kept in two.json: 2 comments of kick.json"), 0u) << out.out;
+  EXPECT_EQ(out.out.find("not kept"), std::string::npos) << out.out;
+  ASSERT_EQ(ayumi({"new", "squat", "--robot", "hoap1", "-o", "squat.json"}).exit_code, 0);
+  const Output other =
+      ayumi({"edit", "blend", "kick.json", "squat.json", "--over", "0.5", "-o", "other.json"});
+  EXPECT_EQ(other.out.find("not kept in other.json: "), 0u) << other.out;
+  EXPECT_NE(other.out.find(" of squat.json\n"), std::string::npos) << other.out;
   const Output mirrored = ayumi({"edit", "mirror", "kick.json", "-o", "m.json"});
   EXPECT_EQ(mirrored.out.find("not kept"), std::string::npos) << mirrored.out;
+}
+
+// The text of a pattern from standard input stays like that of a file.
+TEST_F(Edit, ThePatternFromStandardInputKeepsItsText) {
+  ASSERT_EQ(ayumi({"new", "kick", "--robot", "hoap1", "-o", "kick.json"}).exit_code, 0);
+  ASSERT_EQ(ayumi({"edit", "mirror", "kick.json", "-o", "file.json"}).exit_code, 0);
+  const std::string command = "cd " + folder.path().string() + " && " + program_under_test() +
+                              " edit mirror - -o piped.json <kick.json >/dev/null 2>&1";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  EXPECT_EQ(contents(folder / "piped.json"), contents(folder / "file.json"));
 }
 
 TEST_F(Edit, RampsComeFromAPosture) {

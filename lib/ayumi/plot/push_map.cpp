@@ -263,8 +263,8 @@ void write_push_map(const PushMap& map, const std::filesystem::path& path) {
 
 namespace {
 
-/// Smallest distance between the places where a foot leaves the ground and where it lands again
-/// that is a step [m], and the smallest turn that is one [rad]. Chosen: above the slip that the
+/// A foot makes a step if it lands at least this far from where it left the ground [m], or turned
+/// at least this much [rad]. Chosen: above the slip that the
 /// check allows, and below the steps of small robots.
 constexpr double kStepDistance = 5e-3, kStepTurn = 0.02;
 

@@ -67,8 +67,8 @@ constexpr double kLeastStill = 0.25;
 constexpr double kLeastMargin = 0.25;
 
 // Smallest margin of the ZMP, as a share of half the width of the narrower sole, with which a
-// timing is not played in open loop. Measured: walks of HOAP-1 keep 0.8 and of humanoid30 0.5, and
-// stand; H1, whose soles are 28 mm wide and whose ankles do not roll, keeps 0.27 and falls.
+// timing is not simulated in open loop. Measured: walks of HOAP-1 keep 0.8 and of humanoid30 0.5,
+// and stand; H1, whose soles are 28 mm wide and whose ankles do not roll, keeps 0.27 and falls.
 constexpr double kClearMargin = 0.35;
 // Largest margins that are kept in other timings, as shares of half this width. Chosen: between
 // kLeastMargin and the whole half; H1 stands with each of them.
@@ -126,31 +126,65 @@ class LocalSearch {
   // double support, are tried then, and finally the uniform pace.
   void stand_if_path_stands(double scale) {
     const double half = half_sole_width(model_);
-    if (result_.report.summary[FindingKind::support_margin] >= kClearMargin * half ||
-        stands(result_.series))
+    if (result_.report.summary[FindingKind::support_margin] >= kClearMargin * half) return;
+    try {
+      result_.stands = stands(result_.series);
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::bad_model) throw;
+      result_.not_simulated = error.what();
       return;
-    search_path_ = {path_, path_pattern_};
-    if (!stands(path_)) return;
+    }
+    if (*result_.stands) return;
+    const CommandSeries path = path_;
+    const Pattern path_pattern = path_pattern_;
+    const double path_scale = path_scale_;
+    if (!stands(path)) {
+      result_.stands = true;  // no worse than at the uniform pace
+      return;
+    }
     const LocalPace first = result_;
     for (const double share : kOtherMargins) {
-      if (share * half >= options_.path.most_margin) break;  // the timing would be the same
+      if (share * half >= options_.path.most_margin) break;  // more than the caller allows
       report(progress_, {"retime", -1, "the robot falls in open loop: another timing"});
       search(scale, share * half);
-      if (result_.found && stands(result_.series)) return;
+      if (result_.found && stands(result_.series)) {
+        result_.stands = true;
+        return;
+      }
     }
     result_ = first;
-    const auto& [series, pattern] = search_path_;
+    if (take_uniform(path_scale, path_pattern, path)) return;
+    // Flights keep their pace.
+    for (int n = 1; n <= kMostSlower && !keys_fly(pattern_); ++n) {
+      const double slower = path_scale * std::pow(kSlowerPath, n);
+      report(progress_, {"retime", -1, "uniform scale " + text::fixed(slower, 4)});
+      try {
+        const Pattern pattern = at_scale(slower);
+        const CommandSeries series = sample(model_, pattern, {.dt = options_.dt}, progress_);
+        if (take_uniform(slower, pattern, series) && stands(series)) return;
+      } catch (const Error& error) {  // the COG sways further at this pace than the legs reach
+        if (error.code() != ErrorCode::bad_pattern) throw;
+      }
+      result_ = first;
+    }
+  }
+
+  // Makes the motion at a uniform pace the result if it passes the check.
+  bool take_uniform(double scale, const Pattern& pattern, const CommandSeries& series) {
     ConsistencyReport report = check_consistency(model_, series, options_.path.check);
-    result_.stands = report.consistent;
-    if (!report.consistent) return;
+    if (!report.consistent) return false;
+    result_.stands = result_.uniform = true;
+    result_.path_scale = scale;
     result_.pattern = pattern;
     result_.series = series;
     result_.report = std::move(report);
     result_.scale = series.duration() / given_duration_;
     result_.binding = {};
+    return true;
   }
 
-  // Whether the robot stands at the end when the motion is played in open loop, without pushes.
+  // Whether the robot stands at the end when the motion is simulated in open loop, without pushes.
+  // Throws Error(bad_model) for a robot that cannot be simulated.
   bool stands(const CommandSeries& series) const {
     SimulateOptions play;
     play.controller.type.kind = ControllerKind::none;
@@ -159,7 +193,12 @@ class LocalSearch {
     Simulator run(model_, series, play);
     run.gather_verdict_only();
     constexpr long kTicks = 100;  // chosen: a fallen robot takes long to simulate
-    while (!run.fell() && run.advance(kTicks, progress_)) continue;
+    try {
+      while (!run.fell() && run.advance(kTicks, progress_)) continue;
+    } catch (const Error& error) {  // the state of a fall may become infinite
+      if (error.code() != ErrorCode::internal) throw;
+      return false;
+    }
     return !run.fell() && run.result().outcome == Outcome::stands;
   }
 
@@ -426,9 +465,8 @@ class LocalSearch {
   LocalPace result_;
   std::vector<TimeSpan> pauses_;  // pauses of the given pattern, if they are kept
   std::vector<Pause> kept_;
-  double most_margin_ = kUnbounded;                // largest margin of the ZMP that is kept [m]
-  std::pair<CommandSeries, Pattern> search_path_;  // the path of the first search
-  double path_scale_ = 0;                          // the scale of the path that was sampled last
+  double most_margin_ = kUnbounded;  // largest margin of the ZMP that is kept [m]
+  double path_scale_ = 0;            // the scale of the path that was sampled last
   Pattern path_pattern_;
   CommandSeries path_;
   std::optional<PathLimits> limits_;

@@ -4,7 +4,7 @@
 // is solved from the ZMP depends on the pace. Along the path, math/path_timing finds the quickest
 // timing within the rows of study/path_limits, which is then made smooth, sampled and checked.
 // Where the check finds an error, a smaller share of the limits may be used, and the next round
-// begins. Where the ZMP comes near the edge of a sole, the motion is played in open loop, too.
+// begins. Where the ZMP comes near the edge of a sole, the motion is simulated in open loop, too.
 //
 // Where nothing moves, no limit binds: such pauses keep their length, or are passed at the largest
 // pace.
@@ -23,8 +23,8 @@ namespace ayumi {
 struct LocalRetimeOptions {
   PathLimitOptions path;     ///< the search sets its smallest margin and its pauses
   bool keep_pauses = false;  ///< pauses last as long as in the given pattern
-  /// The ground on which the robot has to stand in open loop wherever it stands at the uniform
-  /// pace; nothing if this does not matter.
+  /// The ground on which the robot should stand in open loop if it stands at the uniform pace;
+  /// nothing if this does not matter.
   std::optional<World> world = {};
   double dt = 0.001;                    ///< period of sampling [s]
   double fastest = 0.05, slowest = 20;  ///< range of the uniform scale of the path
@@ -35,11 +35,14 @@ struct LocalPace {
   Pattern pattern;           ///< the pattern with this timing, usually as a table
   CommandSeries series;      ///< samples of the pattern
   ConsistencyReport report;  ///< check of the samples
-  /// Whether the robot stands in open loop, unless it does not stand at the uniform pace either.
-  /// The result may be the motion at the uniform pace for this reason.
-  bool stands = true;
+  /// False if the robot falls in open loop with this timing although it stands at the uniform pace.
+  /// Nothing if no motion was simulated.
+  std::optional<bool> stands;
+  /// The reason why the motion cannot be simulated, in words, if it should have been.
+  std::string not_simulated;
+  bool uniform = false;   ///< the motion at the uniform pace, because with other timings it falls
   double scale = 1;       ///< duration divided by that of the given pattern
-  double path_scale = 1;  ///< uniform scale of the path
+  double path_scale = 1;  ///< uniform scale of the path, or of the motion if it is uniform
   std::vector<BindingLimit>
       binding;     ///< limits that decide the pace; the one with the largest share comes first
   int rounds = 0;  ///< number of timings that were checked

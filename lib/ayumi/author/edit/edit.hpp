@@ -104,8 +104,8 @@ Pattern joined(const RobotModel& model, const MotionPart& first, const MotionPar
 /// phases and scenario of the second pattern are moved in place and time; at the join, each track
 /// of either pattern gets a key with its value. Throws the same errors as joined(), and
 /// Error(bad_pattern) with the reason if keys cannot express the joined motion: a table, a
-/// correction, VIIP phases, legs led by joints, foot keys, and tracks of COG or ZMP that only one
-/// of the patterns has.
+/// correction, VIIP phases, legs led by joints, a foot that has keys in one pattern and swings in
+/// the other, and tracks of COG or ZMP that only one of the patterns has.
 Pattern chained(const RobotModel& model, const MotionPart& first, const MotionPart& second,
                 double over);
 

@@ -169,10 +169,14 @@ Pattern plain(const RobotModel& model, const Pattern& pattern, const CommandSeri
   return result;
 }
 
-void add_key(std::vector<Keyframe>& keys, const Keyframe& key) {
+bool same_time(const Keyframe& a, const Keyframe& b) {
   // Times closer than this are equal [s]. Chosen: above rounding.
   constexpr double kSame = 1e-9;
-  if (!keys.empty() && std::abs(keys.back().t - key.t) < kSame)
+  return std::abs(a.t - b.t) < kSame;
+}
+
+void add_key(std::vector<Keyframe>& keys, const Keyframe& key) {
+  if (!keys.empty() && same_time(keys.back(), key))
     merge(keys.back(), key);
   else
     keys.push_back(key);
@@ -410,7 +414,11 @@ void require_same_tracks(const KeyedTracks& a, const KeyedTracks& b) {
   for (const Side side : {Side::left, Side::right})
     if ((has_keys(a.pattern, side) && has_swings(b.pattern, side)) ||
         (has_keys(b.pattern, side) && has_swings(a.pattern, side)))
-      stop(std::string("keys of the ") + name_of(side) + " foot, and the foot swings in the other");
+      fail(
+          ErrorCode::bad_pattern, in_file(b.pattern, "/keyframes"),
+          std::string("the ") + name_of(side) +
+              " foot has keys in one motion and swings in the other, so the keys of both cannot be "
+              "joined");
   for (const size_t axis : {0, 1})
     if (a.tracks.cog[axis].has_value() != b.tracks.cog[axis].has_value())
       stop("keys of the COG position");
@@ -465,6 +473,18 @@ Pattern chained(const RobotModel& model, const MotionPart& first, const MotionPa
   result.parameters.clear();
   const double end = first.pattern.phases.back().until, later = end + over;
   Keyframe at_end = keys_at(model, one, end, two);
+  // A spline through equal values does not rest between them, but a segment with minimum jerk does.
+  // A key that its author wrote at the end keeps its interpolation; after it, a foot needs no key
+  // before that of the start.
+  const bool curved = first.pattern.interpolation == Interpolation::spline ||
+                      first.pattern.interpolation == Interpolation::cubic;
+  const Keyframe* const written =
+      !result.keyframes.empty() && same_time(result.keyframes.back(), at_end)
+          ? &result.keyframes.back()
+          : nullptr;
+  if (curved && !written) at_end.interpolation = Interpolation::minimum_jerk;
+  for (const size_t foot : {0, 1})
+    if (curved && written && !written->feet[foot] && over > 0) at_end.feet[foot].reset();
   add_key(result.keyframes, at_end);
   if (over > 0) result.phases.push_back(both_feet_until(later));
   Keyframe at_start = keys_at(model, two, 0, one);
@@ -473,7 +493,7 @@ Pattern chained(const RobotModel& model, const MotionPart& first, const MotionPa
   for (const auto& [link, led] : two.hands) at_start.hands[link] = {};
   if (two.gaze) at_start.gaze = LinkTarget{};
   const auto move = [&](Keyframe& key) {
-    // Places are rounded so that they print as they would be written [1/m], [1/rad].
+    // Places that are moved are rounded so that they print as they would be written [1/m], [1/rad].
     constexpr double kParts = 1e9;
     move_key(shift, key);
     for (auto& foot : key.feet) {
@@ -485,6 +505,7 @@ Pattern chained(const RobotModel& model, const MotionPart& first, const MotionPa
   };
   move(at_start);
   at_start.t = later;
+  if (curved) at_start.interpolation = Interpolation::minimum_jerk;
   if (over > 0)
     add_key(result.keyframes, at_start);
   else
@@ -497,6 +518,7 @@ Pattern chained(const RobotModel& model, const MotionPart& first, const MotionPa
   }
   for (const Keyframe& each : second.pattern.keyframes) {
     Keyframe key = translated(model, second.pattern, first.pattern, each);
+    if (key.t == 0) key.interpolation.reset();  // no segment ended here; now the transition does
     move(key);
     key.t = round_time(key.t + later);
     add_key(result.keyframes, key);

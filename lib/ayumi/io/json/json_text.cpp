@@ -181,9 +181,15 @@ std::string line_break_of(const std::string& text) {
 size_t after_comma(const std::string& text, size_t end) { return skip(text, end) + 1; }
 
 std::string inserted(const std::string& text, const JsonTree& list, size_t index,
-                     const std::string& words) {
+                     const std::vector<std::string>& values) {
   const auto& parts = list.parts;
+  const auto joined = [&](const std::string& between) {
+    std::string words;
+    for (const std::string& value : values) words += (words.empty() ? "" : between) + value;
+    return words;
+  };
   if (parts.empty()) {
+    const std::string words = joined(", ");
     const bool spaced = list.kind == '{';
     const std::string pad = spaced ? " " : "";
     return text.substr(0, list.at.begin + 1) + pad + words + pad + text.substr(list.at.end - 1);
@@ -191,11 +197,13 @@ std::string inserted(const std::string& text, const JsonTree& list, size_t index
   const bool last = index == parts.size();
   const JsonTree& neighbour = last ? parts.back() : parts[index];
   if (!begins_line(text, neighbour.at.key)) {
+    const std::string words = joined(", ");
     if (last)
       return text.substr(0, neighbour.at.end) + ", " + words + text.substr(neighbour.at.end);
     return text.substr(0, neighbour.at.key) + words + ", " + text.substr(neighbour.at.key);
   }
-  const std::string line = line_break_of(text) + indent_at(text, neighbour.at.key) + words;
+  const std::string begin = line_break_of(text) + indent_at(text, neighbour.at.key);
+  const std::string line = begin + joined("," + begin);
   if (last) {
     const size_t end = neighbour.at.end, place = after_remark(text, end);
     return text.substr(0, end) + "," + text.substr(end, place - end) + line + text.substr(place);
@@ -208,7 +216,8 @@ std::string inserted(const std::string& text, const JsonTree& list, size_t index
 }  // namespace
 
 JsonTree json_tree(const std::string& text) {
-  size_t i = 0;
+  const std::string_view mark = "\xEF\xBB\xBF";  // byte order mark of UTF-8
+  size_t i = text.starts_with(mark) ? mark.size() : 0;
   return Scanner(text).value(i, "", 0);
 }
 
@@ -241,17 +250,22 @@ std::string with_member(const std::string& text, const std::string& pointer, con
   const JsonTree root = json_tree(text);
   const JsonTree& object = *require_value(root, pointer).value;
   if (object.kind != '{') fail(ErrorCode::usage, pointer + " is not an object");
-  return inserted(text, object, object.parts.size(), Json(key).dump() + ": " + value);
+  return inserted(text, object, object.parts.size(), {Json(key).dump() + ": " + value});
 }
 
 std::string with_item(const std::string& text, const std::string& pointer, size_t index,
                       const std::string& value) {
+  return with_items(text, pointer, index, {value});
+}
+
+std::string with_items(const std::string& text, const std::string& pointer, size_t index,
+                       const std::vector<std::string>& values) {
   const JsonTree root = json_tree(text);
   const JsonTree& array = *require_value(root, pointer).value;
   if (array.kind != '[' || index > array.parts.size())
     fail(ErrorCode::usage,
          pointer + " is not an array in which an item can have the index " + std::to_string(index));
-  return inserted(text, array, index, value);
+  return inserted(text, array, index, values);
 }
 
 std::string without_value(const std::string& text, const std::string& pointer) {

@@ -22,7 +22,8 @@ struct JsonTree {
   std::vector<JsonTree> parts;  ///< parts of an object or array
 };
 
-/// The text must be JSON that parse_json() reads.
+/// The text must be JSON that parse_json() reads. A byte order mark (UTF-8) before it belongs to no
+/// value.
 JsonTree json_tree(const std::string& text);
 
 /// The place of the value of a JSON pointer; nothing if there is none.
@@ -48,6 +49,10 @@ std::string with_member(const std::string& text, const std::string& pointer, con
 /// previous item on its line stays there.
 std::string with_item(const std::string& text, const std::string& pointer, size_t index,
                       const std::string& value);
+
+/// The same for several items, in their order.
+std::string with_items(const std::string& text, const std::string& pointer, size_t index,
+                       const std::vector<std::string>& values);
 
 /// The text without the member or item at `pointer`, without its comma, and without its line if
 /// nothing else is on it.

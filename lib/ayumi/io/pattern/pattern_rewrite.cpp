@@ -6,9 +6,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <charconv>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <tuple>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/json_pointer.hpp"
@@ -26,9 +30,9 @@ namespace {
 namespace fs = std::filesystem;
 using Ordered = nlohmann::ordered_json;
 
-// Largest difference of a number between the edited pattern and the one that the new text
-// describes, as a share of the number where it is above 1. Derived: sums in expressions are rounded
-// to 1e-6 (pattern_edit.cpp), and a time relative to the one before is the difference of two.
+// Tolerance between a number of the edited pattern and the number that the new text gives: absolute
+// up to 1, relative above. Derived: sums in expressions are rounded to 1e-6 (pattern_edit.cpp), and
+// a relative time is the difference of two of them.
 constexpr double kSameNumber = 2.5e-6;
 // Largest difference of numbers that are equal except for rounding, in the same sense. Chosen: a
 // few thousand times the rounding of one operation.
@@ -36,9 +40,9 @@ constexpr double kRounding = 1e-12;
 // Number of parts of a second to which relative times are rounded [1/s]. Definition: the same as in
 // the reader.
 constexpr double kStepsOfTime = 1e9;
-// Largest number of phases or keyframes, and of added or removed parts. Chosen: the search for what
-// belongs together takes the square of the first, and each added part a copy of the text; with
-// these values both take less than a second.
+// Largest number of phases or keyframes, and of added or removed parts. Chosen: matching takes time
+// proportional to the square of the number of items; with 2000 it takes less than a second. Twice
+// as many parts are all phases and keyframes of a pattern of that size.
 constexpr size_t kMostMatched = 2000, kMostParts = 4000;
 
 bool same_number(double a, double b, double share) {
@@ -114,8 +118,8 @@ const JsonTree* part_of(const JsonTree& tree, const std::string& name) {
   return nullptr;
 }
 
-// Pairs of items of two lists with the same pointer that keep their order, as many as possible:
-// for each item of `after`, the index in `before`, or -1.
+// Longest common subsequence of two lists of pointers: for each item of `after`, its index in
+// `before`, or -1.
 std::vector<int> belonging(const std::vector<std::string>& before,
                            const std::vector<std::string>& after) {
   const size_t n = before.size(), m = after.size();
@@ -206,26 +210,48 @@ class Rewrite {
     return text_.substr(at.at.begin, at.at.end - at.at.begin);
   }
 
+  // The words of a value. If rounding decides about its digits, `number` is the number for which
+  // they stand, or the number that they add to an expression.
+  struct Words {
+    std::string text;
+    std::optional<double> number = {};
+  };
+  struct Replaced {
+    size_t end = 0;
+    Words words;
+  };
+
+  void replace(size_t begin, size_t end, const Words& words) {
+    const auto [found, is_new] = replaced_.emplace(begin, Replaced{end, words});
+    if (is_new) return;
+    const Words& other = found->second.words;
+    // Times of rounds are rounded in different places.
+    const bool same =
+        other.text == words.text ||
+        (other.number && words.number && same_number(*other.number, *words.number, kSameNumber));
+    if (!same) possible_ = false;  // two rounds of a block need different texts
+  }
+
   void replace(size_t begin, size_t end, const std::string& words) {
-    const auto [found, is_new] = replaced_.emplace(begin, std::pair(end, words));
-    if (!is_new && found->second.second != words) possible_ = false;  // rounds that differ
+    replace(begin, end, Words{words});
   }
 
   // The text of a number that changes from a to b, in the form of the author.
-  std::string changed(const JsonTree& at, double a, double b, bool time) const {
+  Words changed(const JsonTree& at, double a, double b, bool time) const {
     const std::string raw = words(at);
-    if (a == b) return raw;
+    if (a == b) return {raw};
     if (raw.empty() || raw.front() != '"') {
       double value = a;
       std::from_chars(raw.data(), raw.data() + raw.size(), value);
       // A vector that the reader normalizes keeps the length that its author gave it.
-      return !same_number(value, a, kRounding) && b == -a ? number(-value) : number(b);
+      if (!same_number(value, a, kRounding) && b == -a) return {number(-value)};
+      return {number(b), b};
     }
     const std::string expression = Json::parse(raw).get<std::string>();
-    if (a != 0 && same_number(a, -b, kRounding)) return quoted(negated(expression));
-    if (time && time_scale_ != 1 && std::abs(b - time_scale_ * a) <= 1 / kStepsOfTime)
-      return quoted("(" + expression + ")*" + text::exact(time_scale_));
-    return quoted(shifted_expression(expression, b - a));
+    if (a != 0 && same_number(a, -b, kRounding)) return {quoted(negated(expression))};
+    if (time && time_scale_ != 1 && same_number(b, time_scale_ * a, kSameNumber))
+      return {quoted("(" + expression + ")*" + text::exact(time_scale_))};
+    return {quoted(shifted_expression(expression, b - a)), b - a};
   }
 
   static std::string negated(const std::string& expression) {
@@ -271,7 +297,7 @@ class Rewrite {
     Members members;
     for (size_t i = 0; i < b.size(); ++i) {
       const bool given = i < at.parts.size() && i < a.size() && a[i].is_number();
-      members.item(given && b[i].is_number() ? changed(at.parts[i], a[i], b[i], false)
+      members.item(given && b[i].is_number() ? changed(at.parts[i], a[i], b[i], false).text
                                              : words_of(b[i]));
     }
     replace(at.at.begin, at.at.end, members.array());
@@ -346,7 +372,8 @@ class Rewrite {
     for (const std::string& name : fresh) added_.insert({pointer, name, words_of(b[name])});
   }
 
-  // The key whose value this key exchanges, as left and right do; empty if there is none.
+  // The key with which this key exchanges its value, as "left" does with "right"; empty if there is
+  // none.
   static std::string exchanged_with(const std::string& key, const Ordered& a, const Ordered& b) {
     if (!b.contains(key) || mirrors(a[key], b[key])) return "";
     for (const auto& [other, value] : a.items())
@@ -376,7 +403,7 @@ class Rewrite {
     }
     a.erase(time.absolute);
     b.erase(time.absolute);
-    // The joints of a key stand in "posture" or in "joints", and both is possible.
+    // The joints of a key stand in "posture", in "joints", or in both.
     const Ordered joints_a = take_joints(a), joints_b = take_joints(b);
     merge_objects(at, pointer, a, b);
     if (joints_a == joints_b) return;
@@ -431,7 +458,7 @@ class Rewrite {
         if (in_block(i)) possible_ = false;
         moved_.push_back({pointer, top(i), std::nullopt});
       }
-    int last = -1;  // the item before, of the text
+    int last = -1;  // index in the text of the previous item that stays
     for (size_t j = 0; j < b.list.size(); ++j) {
       const std::array<double, 2> before = {
           from[j] < 0 ? 0 : a.before(static_cast<size_t>(from[j])), b.before(j)};
@@ -466,8 +493,8 @@ class Rewrite {
       return words_of(b.list[j]);
     std::string result = words(*at);
     for (auto each = alone.replaced_.rbegin(); each != alone.replaced_.rend(); ++each)
-      result.replace(each->first - at->at.begin, each->second.first - each->first,
-                     each->second.second);
+      result.replace(each->first - at->at.begin, each->second.end - each->first,
+                     each->second.words.text);
     return result;
   }
 
@@ -491,7 +518,7 @@ class Rewrite {
   std::string applied() const {
     std::string result = text_;
     for (auto each = replaced_.rbegin(); each != replaced_.rend(); ++each)
-      result.replace(each->first, each->second.first - each->first, each->second.second);
+      result.replace(each->first, each->second.end - each->first, each->second.words.text);
     for (const std::string& pointer : removed_) result = without_value(result, pointer);
     for (const Added& each : added_)
       result = with_member(result, each.pointer, each.key, each.words);
@@ -499,11 +526,24 @@ class Rewrite {
     // that are inserted at one index stand in their order.
     std::vector<Moved> moved(moved_.rbegin(), moved_.rend());
     std::stable_sort(moved.begin(), moved.end(), [](const Moved& a, const Moved& b) {
-      return std::pair(a.index, !a.words) > std::pair(b.index, !b.words);
+      return std::tuple(a.list, a.index, !a.words) > std::tuple(b.list, b.index, !b.words);
     });
-    for (const Moved& each : moved)
-      result = each.words ? with_item(result, each.list, each.index, *each.words)
-                          : without_value(result, each.list + "/" + std::to_string(each.index));
+    for (auto each = moved.begin(); each != moved.end();) {
+      if (!each->words) {
+        result = without_value(result, each->list + "/" + std::to_string(each->index));
+        ++each;
+        continue;
+      }
+      // All items that come to one place, because each change reads the whole text.
+      const auto end = std::find_if(each, moved.end(), [&](const Moved& other) {
+        return other.list != each->list || other.index != each->index || !other.words;
+      });
+      std::vector<std::string> items;
+      for (auto item = std::make_reverse_iterator(end); item.base() != each; ++item)
+        items.push_back(*item->words);
+      result = with_items(result, each->list, each->index, items);
+      each = end;
+    }
     return result;
   }
 
@@ -511,63 +551,107 @@ class Rewrite {
   const JsonTree tree_;
   const double time_scale_;
   bool possible_ = true;
-  std::map<size_t, std::pair<size_t, std::string>> replaced_;  // by begin: end and words
+  std::map<size_t, Replaced> replaced_;  // by begin
   std::set<Added> added_;
   std::set<std::string> removed_;
   std::vector<Moved> moved_;
 };
 
-struct Marks {
-  std::array<int, 5> count = {};
-};
 constexpr std::array<const char*, 5> kMarks = {"comment", "expression", "parameter",
                                                "repeated block", "included file"};
+enum Mark : size_t { comments, expressions, parameters, blocks, includes };
+// The words of each mark of a text.
+using Marks = std::array<std::vector<std::string>, kMarks.size()>;
 
-void count_values(const std::string& text, const JsonTree& tree, Marks& marks) {
-  if (tree.kind == 'v' && text[tree.at.begin] == '"' && tree.name != "$schema" &&
-      is_expression(
-          Json::parse(text.substr(tree.at.begin, tree.at.end - tree.at.begin)).get<std::string>()))
-    ++marks.count[1];
-  if (tree.kind == '{' && part_of(tree, "repeat")) ++marks.count[3];
-  for (const JsonTree& part : tree.parts) count_values(text, part, marks);
+void add_values(const std::string& text, const JsonTree& tree, Marks& marks) {
+  const auto words = [&](const JsonTree& of) {
+    return text.substr(of.at.begin, of.at.end - of.at.begin);
+  };
+  if (tree.kind == 'v' && text[tree.at.begin] == '"') {
+    const std::string value = Json::parse(words(tree)).get<std::string>();
+    if (is_expression(value)) marks[expressions].push_back(value);
+  }
+  if (const JsonTree* const repeat = tree.kind == '{' ? part_of(tree, "repeat") : nullptr)
+    marks[blocks].push_back(words(*repeat));
+  for (const JsonTree& part : tree.parts) add_values(text, part, marks);
 }
 
 Marks marks_of(const std::string& text) {
   Marks marks;
+  const auto add_comment = [&](size_t begin, size_t end) {
+    while (end > begin && std::isspace(static_cast<unsigned char>(text[end - 1]))) --end;
+    marks[comments].push_back(text.substr(begin, end - begin));
+  };
   for (size_t i = 0; i < text.size(); ++i) {
+    const size_t begin = i;
     if (text[i] == '"') {
       for (++i; i < text.size() && text[i] != '"'; ++i)
         if (text[i] == '\\') ++i;
     } else if (text.compare(i, 2, "//") == 0) {
-      ++marks.count[0];
       i = std::min(text.find('\n', i), text.size());
+      add_comment(begin, i);
     } else if (text.compare(i, 2, "/*") == 0) {
-      ++marks.count[0];
       i = std::min(text.find("*/", i + 2), text.size() - 1) + 1;
+      add_comment(begin, std::min(i + 1, text.size()));
     }
   }
   const JsonTree tree = json_tree(text);
   for (const JsonTree& part : tree.parts)
-    if (part.name == "postures" || part.name == "phases" || part.name == "keyframes" ||
-        part.kind != 'v')
-      count_values(text, part, marks);
-  if (const JsonTree* const parameters = part_of(tree, "parameters"))
-    marks.count[2] = static_cast<int>(parameters->parts.size());
-  if (const JsonTree* const include = part_of(tree, "include"))
-    marks.count[4] = include->kind == '[' ? static_cast<int>(include->parts.size()) : 1;
+    if (part.kind != 'v') add_values(text, part, marks);
+  if (const JsonTree* const given = part_of(tree, "parameters"))
+    for (const JsonTree& part : given->parts) marks[parameters].push_back(part.name);
+  if (const JsonTree* const include = part_of(tree, "include")) {
+    const auto add_file = [&](const JsonTree& name) {
+      // Its folder changes with that of the pattern.
+      const std::string file = text.substr(name.at.begin, name.at.end - name.at.begin);
+      marks[includes].push_back(fs::path(Json::parse(file).get<std::string>()).filename());
+    };
+    if (include->kind == '[')
+      std::for_each(include->parts.begin(), include->parts.end(), add_file);
+    else
+      add_file(*include);
+  }
   return marks;
+}
+
+// The parameters in an expression, in their order. They stay if the sign or the scale of the
+// expression changes, or if a number is added.
+std::string names_in(const std::string& expression) {
+  std::string names;
+  for (size_t i = expression.find("${"); i != std::string::npos; i = expression.find("${", i)) {
+    const size_t end = std::min(expression.find('}', i), expression.size());
+    names += expression.substr(i, end - i);
+    i = end;
+  }
+  return names;
+}
+
+// Removes the words that both lists have, each as often as both have it.
+void remove_common(std::vector<std::string>& a, std::vector<std::string>& b) {
+  std::sort(a.begin(), a.end());
+  std::sort(b.begin(), b.end());
+  std::vector<std::string> only_a, only_b;
+  std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(only_a));
+  std::set_difference(b.begin(), b.end(), a.begin(), a.end(), std::back_inserter(only_b));
+  a = std::move(only_a);
+  b = std::move(only_b);
 }
 
 }  // namespace
 
 std::vector<std::string> lost_marks(const std::string& text, const std::string& kept) {
-  const Marks before = marks_of(text), after = marks_of(kept);
+  Marks before = marks_of(text), after = marks_of(kept);
+  const std::set<std::string> given(before[expressions].begin(), before[expressions].end());
+  for (size_t i = 0; i < kMarks.size(); ++i) remove_common(before[i], after[i]);
+  // What is left of the expressions has changed; those that are in both texts are copies.
+  std::erase_if(after[expressions], [&](const std::string& e) { return given.contains(e); });
+  for (Marks* const marks : {&before, &after})
+    for (std::string& expression : (*marks)[expressions]) expression = names_in(expression);
+  remove_common(before[expressions], after[expressions]);
   std::vector<std::string> lost;
-  for (size_t i = 0; i < kMarks.size(); ++i) {
-    const int count = before.count[i] - after.count[i];
-    if (count > 0)
+  for (size_t i = 0; i < kMarks.size(); ++i)
+    if (const size_t count = before[i].size(); count > 0)
       lost.push_back(std::to_string(count) + " " + kMarks[i] + (count == 1 ? "" : "s"));
-  }
   return lost;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 // Writes the changes of an edited pattern into the text of its author. Comments, order, spacing,
-// parameters, expressions, blocks that repeat and included files stay wherever the values around
-// them stay or have a text of their own: an expression that changes its sign becomes
+// parameters, expressions, repeated blocks and included files stay where their values do not
+// change, or where the change can be written as an expression: one that changes its sign becomes
 // "-(${stride})", and one whose time is scaled becomes "(${lift_off})*1.25".
 
 #include <filesystem>
@@ -21,7 +21,8 @@ struct RewriteOptions {
 };
 
 /// A text, and the pattern that it describes. Numbers that are added to expressions are rounded to
-/// 1e-6, so values of the pattern may differ by as much from those of the edit.
+/// 1e-6, so values may differ from those of the edit by up to 2.5e-6 (as a share of values above
+/// 1).
 struct RewrittenPattern {
   std::string text;
   Pattern pattern;
@@ -34,8 +35,9 @@ struct RewrittenPattern {
 std::optional<RewrittenPattern> rewritten(const std::string& text, const Pattern& before,
                                           const Pattern& after, const RewriteOptions& options);
 
-/// What is in `text` but not in `kept`: comments, expressions, parameters, blocks that repeat and
-/// included files, each with its number, such as "3 comments". Both are texts of patterns.
+/// What is in `text` but not in `kept`: comments, expressions, parameters, repeated blocks and
+/// included files, each with its number, such as "3 comments". Both are texts of patterns. An
+/// expression is kept if one with the same parameters is in its place.
 std::vector<std::string> lost_marks(const std::string& text, const std::string& kept);
 
 }  // namespace ayumi
