@@ -100,8 +100,8 @@ std::string obstacle_of_low_jump(const RobotModel& model, JumpParameters p) {
   p.height *= kLow;
   const std::string why = obstacle(model, p, model.profile_names().front());
   if (why.empty()) return "\n";
-  return "Even a jump of " + text::brief(1e3 * p.height, 2) +
-         " mm is refused, with the default stoop and COG height, because of " + why + "\n";
+  return "A jump of " + text::brief(1e3 * p.height, 2) +
+         " mm with the default stoop and COG height fails: " + why + "\n";
 }
 
 // Resolution of the search for the highest jump [m]. Chosen: 1 % of the default height (30 mm).
