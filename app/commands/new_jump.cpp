@@ -33,8 +33,7 @@ std::string obstacle(const RobotModel& model, const JumpParameters& p, const std
     options.profile = profile;
     const ConsistencyReport report = check_consistency(model, series, options);
     if (report.consistent) return {};
-    const Finding& first = report.findings.front();
-    return kind_place_and_time(first) + ": " + first.hint;
+    return finding_with_hint(report.findings.front());
   } catch (const Error& error) {
     // The jump is out of the legs' reach, or there is no push of this shape.
     if (error.code() == ErrorCode::bad_pattern || error.code() == ErrorCode::usage)
