@@ -83,11 +83,10 @@ class InverseKinematics {
 
   /// Newton's method on base position and leg joints, which starts from `state`. Other joints are
   /// read from `state`, and the base attitude follows from `target.trunk`. Legs of six joints meet
-  /// the target to 1e-13. In legs of more than six joints, those that leg() does not list keep their
-  /// angles in `state`. Legs of fewer joints are solved by damped least squares and come within
-  /// lacking_tolerance().
-  /// `state` is only meaningful if the solution says that the target is reached; `data` is a
-  /// workspace.
+  /// the target to 1e-13. In legs of more than six joints, those that leg() does not list keep
+  /// their angles in `state`. Legs of fewer joints are solved by damped least squares and come
+  /// within lacking_tolerance(). `state` is only meaningful if the solution says that the target is
+  /// reached; `data` is a workspace.
   PostureSolution solve(const PostureTarget& target, RobotState& state, RobotData& data) const;
 
  private:
