@@ -44,10 +44,6 @@ bool cannot_be_done(const Error& error) {
   return error.code() == ErrorCode::bad_pattern || error.code() == ErrorCode::usage;
 }
 
-std::string text_of(const Finding& finding) {
-  return kind_place_and_time(finding) + ": " + finding.hint;
-}
-
 // The result of the quick check of a motion.
 struct Look {
   std::string posture;  // the error in its postures; "" if there is none
@@ -63,7 +59,7 @@ Look look_at(const RobotModel& model, const Pattern& pattern) {
   for (const Finding& finding : report.findings)
     if (look.posture.empty() && finding.severity == Severity::error &&
         (is_of_posture(finding) || finding.kind == FindingKind::table_position))
-      look.posture = text_of(finding);
+      look.posture = finding_with_hint(finding);
   return look;
 }
 
@@ -80,15 +76,16 @@ Wrong wrong_motion(const RobotModel& model, const Pattern& pattern) {
   Wrong wrong;
   for (const Finding& finding : judged.report.findings) {
     if (finding.severity != Severity::error) continue;
-    if (wrong.first.empty()) wrong.first = text_of(finding);
+    if (wrong.first.empty()) wrong.first = finding_with_hint(finding);
     const double severity = severity_of(finding);
     if (severity <= wrong.severity) continue;
     wrong.severity = severity;
     wrong.worst = kind_place_and_time(finding) + ": " + amount_text(finding);
   }
   if (wrong.first.empty())
-    wrong.first = judged.report.findings.empty() ? "the motion does not pass the check"
-                                                 : text_of(judged.report.findings.front());
+    wrong.first = judged.report.findings.empty()
+                      ? "the motion does not pass the check"
+                      : finding_with_hint(judged.report.findings.front());
   return wrong;
 }
 

@@ -30,7 +30,7 @@ bool choose_profile(const Context& context, Task& task) {
   if (judged.good()) return true;
   const Finding& first = judged.report.findings.front();
   context.print(std::string("the check finds the new pattern inconsistent: ") +
-                kind_place_and_time(first) + ": " + first.hint + "\n");
+                finding_with_hint(first) + "\n");
   return false;
 }
 

@@ -59,7 +59,7 @@ View view_of(const RobotModel& model, const SignTest& test) {
                         along = axis.cwiseAbs();
   const bool left = data.position[body].y() > kBeside;
   View view;
-  Eigen::Vector3d towards;  // from the robot to an observer to whom the joint turns
+  Eigen::Vector3d towards;  // direction to the observer for whom the sense of rotation is stated
   std::string where = "seen from the ";
   if (along.z() > std::max(along.x(), along.y())) {
     // The camera "iso" stands to the right of the robot, by 50 degrees from its front.
@@ -100,8 +100,9 @@ std::string sign_test_words(const RobotModel& model, const std::vector<SignTest>
       bent += (bent.empty() ? "" : ", ") + dof.name + " (" + in_units(dof, start[test.dof]) + ")";
   }
   if (bent.empty())
-    return "Every test begins and ends with all joints at 0. There, every encoder reads 0, so a "
-           "joint with a wrong sign does not jump when a test begins.";
+    return "Every test begins and ends with all joints at 0. A target of 0 is an encoder reading "
+           "of "
+           "0, so a joint with a wrong sign does not jump when a test begins.";
   return "Caution: these joints do not begin at 0: " + bent +
          ". When a test begins, each of them that has a wrong sign jumps to the opposite angle.";
 }

@@ -226,14 +226,21 @@ CautiousTable table_of_run(const ExportOptions& options, const RunFolder& run,
   const auto made = [&](const SimulationLog& from) {
     return table_of_log(model, profile, from, content);
   };
-  if (!options.log.empty()) return {made(log), caution_of(log)};
   const bool disturbed = !log.scenario.empty();
-  if (options.pushed && !(run.light ? disturbed : run.pushed.has_value()))
+  if (!options.log.empty()) {
+    // The motion that was played may itself contain the reactions to disturbances.
+    TableCaution caution = caution_of(log);
+    const TableCaution& of_run = disturbed ? run.pushed_caution : run.reference_caution;
+    if (!of_run.disturbances.empty()) caution.disturbances = of_run.disturbances;
+    return {made(log), caution};
+  }
+  const bool reacts = !run.reference_caution.disturbances.empty();
+  if (options.pushed && !reacts && !(run.light ? disturbed : run.pushed.has_value()))
     fail(ErrorCode::usage, {options.input},
          "--pushed needs a run with disturbances, and this run has none; leave "
          "--pushed out");
   if (run.light) return {made(log), disturbed ? run.pushed_caution : run.reference_caution};
-  const bool pushed = options.pushed || !run.reference;
+  const bool pushed = (options.pushed && run.pushed) || !run.reference;
   const TableCaution& caution = !pushed      ? run.reference_caution
                                 : run.pushed ? run.pushed_caution
                                              : caution_of(log);
@@ -509,15 +516,27 @@ void write_table(const ExportOptions& options, const Context& context, const Sou
   const std::string note = note_beside(options.output).string();
   const bool old_note = has_table_note(options.output);
   const bool beside = needs_note(options) && !nothing;
-  if (beside) refuse_overwriting(context, note);
-  if (const MotionFormat* format = motion_format(options))
-    write_motion(*format, options, context, source, safe);
-  else
-    write_file(options.output,
-               bytes_of(options.format, source, safe.table, caution, options, safe.first));
+  std::optional<std::string> before;
+  if (beside) {  // first, because no table may be without its note
+    refuse_overwriting(context, note);
+    if (fs::is_regular_file(note)) before = read_file(note);
+    write_file(note, table_note(caution));
+  }
+  try {
+    if (const MotionFormat* format = motion_format(options))
+      write_motion(*format, options, context, source, safe);
+    else
+      write_file(options.output,
+                 bytes_of(options.format, source, safe.table, caution, options, safe.first));
+  } catch (...) {
+    if (before)
+      write_file(note, *before);
+    else if (beside)
+      fs::remove(note);
+    throw;
+  }
   if (old_note && !beside) fs::remove(note);  // it was about the previous table
   if (!beside) return;
-  write_file(note, table_note(caution));
   context.print(note + ": read this note before you send the table to a robot\n");
 }
 

@@ -84,7 +84,7 @@ void import_motion(const Context& context, const ImportCommand& options) {
   const std::string name = options.file == "-" ? "standard input" : options.file;
   ImportedPattern imported =
       import_pattern(read_input(options.file, kLargestMotionFile), name, model, options.how);
-  add_caution(imported.caution, read_table_note(options.file));
+  if (options.file != "-") add_caution(imported.caution, read_table_note(options.file));
   for (const std::string& words : words_of(imported.caution)) imported.filled.push_back(words);
   imported.pattern.robot = robot_as_written(options.robot);
   write_imported(options.out, imported);

@@ -33,8 +33,7 @@ std::string obstacle(const RobotModel& model, const JumpParameters& p, const std
     options.profile = profile;
     const ConsistencyReport report = check_consistency(model, series, options);
     if (report.consistent) return {};
-    const Finding& first = report.findings.front();
-    return kind_place_and_time(first) + ": " + first.hint;
+    return finding_with_hint(report.findings.front());
   } catch (const Error& error) {
     // The jump is out of the legs' reach, or there is no push of this shape.
     if (error.code() == ErrorCode::bad_pattern || error.code() == ErrorCode::usage)
@@ -100,8 +99,8 @@ std::string obstacle_of_low_jump(const RobotModel& model, JumpParameters p) {
   p.height *= kLow;
   const std::string why = obstacle(model, p, model.profile_names().front());
   if (why.empty()) return "\n";
-  return "Even a jump of " + text::brief(1e3 * p.height, 2) +
-         " mm is refused, with the default stoop and COG height, because of " + why + "\n";
+  return "A jump of " + text::brief(1e3 * p.height, 2) +
+         " mm with the default stoop and COG height fails: " + why + "\n";
 }
 
 // Resolution of the search for the highest jump [m]. Chosen: 1 % of the default height (30 mm).

@@ -43,6 +43,7 @@ struct ReplayCommand {
 struct Played {
   ReferenceTrajectory table;
   std::string format, layout;
+  TableCaution caution;  ///< cautions in its head and in the note beside it
 };
 
 /// How closely a simulated robot follows the targets.
@@ -66,9 +67,12 @@ std::string robot_in_head(const std::string& bytes, const std::string& file) {
   return "";
 }
 
+// Whether a table may name its robot. Other programs write JSON, too, but without "columns".
 bool has_head(const std::string& bytes) {
   const size_t first = bytes.find_first_not_of(" \t\r\n");
-  return first != std::string::npos && (bytes[first] == '#' || bytes[first] == '{');
+  return first != std::string::npos &&
+         (bytes[first] == '#' ||
+          (bytes[first] == '{' && bytes.find("\"columns\"") != std::string::npos));
 }
 
 RobotModel robot_of(const ReplayCommand& options, const Context& context,
@@ -80,16 +84,22 @@ RobotModel robot_of(const ReplayCommand& options, const Context& context,
   return robot_of_run(context, options.robot, recorded);
 }
 
+/// The cautions in the note beside the table. Standard input has no note.
+TableCaution note_of(const std::string& file) {
+  return file == "-" ? TableCaution() : read_table_note(file);
+}
+
 Played read_played(const ReplayCommand& options, const RobotModel& model,
                    const std::string& bytes) {
   if (looks_like_hoap(bytes, model)) {
     const HoapFile sequence =
         parse_hoap(bytes, options.file, model,
                    options.rate > 0 ? static_cast<int>(std::lround(1000 / options.rate)) : 0);
-    return {hoap_targets(model, sequence), "hoap", sequence.layout.name};
+    return {hoap_targets(model, sequence), "hoap", sequence.layout.name, note_of(options.file)};
   }
   const ImportedMotion read = read_motion_rows(bytes, options.file, model, {.rate = options.rate});
-  Played played{{}, read.format, ""};
+  Played played{{}, read.format, "", note_of(options.file)};
+  add_caution(played.caution, read.caution);
   played.table.dt = read.motion.dt;
   played.table.joints = model.dof_names();
   for (Eigen::Index k = 0; k < read.motion.theta.rows(); ++k) {
@@ -179,16 +189,14 @@ Json json_of(const SimulationLog& log, const Tracking& tracking) {
   return json;
 }
 
-/// The cautions in the head of the table and in the note beside it.
-TableCaution caution_about(const ReplayCommand& options, const std::string& bytes) {
-  TableCaution caution = read_table_note(options.file);
-  if (has_head(bytes)) add_caution(caution, parse_table_caution(bytes, options.file));
-  return caution;
-}
-
 void write_folder(const ReplayCommand& options, const Context& context,
-                  const std::vector<SimulationLog>& logs, const Json& json) {
+                  const std::vector<SimulationLog>& logs, const TableCaution& caution,
+                  const Json& json) {
   RunFolder run;
+  // The tables of this run follow from its logs, so run.json holds their cautions.
+  run.light = true;
+  run.reference_caution = caution;
+  if (!caution.unfit.empty()) run.unfit.push_back(caution.unfit);
   run.provenance = logs.front().provenance;
   for (const SimulationLog& log : logs) {
     run.logs[log.plant] = log;
@@ -218,7 +226,7 @@ void replay(Context& context, const ReplayCommand& options) {
                       " rows, one every " + text::brief(1000 * played.table.dt) + " ms (" +
                       played.format + (played.layout.empty() ? "" : ", " + played.layout) +
                       "), profile " + safety.profile + "\n";
-  const TableCaution caution = caution_about(options, bytes);
+  const TableCaution& caution = played.caution;
   for (const std::string& line : words_of(caution)) words += "  " + line + "\n";
   if (board.clamps.empty()) words += "  the motor boards send every row to the motors unchanged\n";
   for (size_t i = 0; i < std::min<size_t>(board.clamps.size(), 5); ++i)
@@ -261,7 +269,7 @@ void replay(Context& context, const ReplayCommand& options) {
       {"clamps", clamps},
       {"plants", simulated}};
   if (!options.out.empty()) {
-    write_folder(options, context, logs, json);
+    write_folder(options, context, logs, caution, json);
     words += "  written to " + options.out + "\n";
   }
   context.print(words);

@@ -116,5 +116,23 @@ TEST_F(Hoap1Clearance, SolesOfFeetWithoutShapesOverlap) {
   EXPECT_GT(clearance(kWidth - 0.015, 0.02), 0.001);  // the foot swings over the other one
 }
 
+// A sole in the plane of its joint is solid, too.
+TEST_F(Hoap1Clearance, SolesAtTheHeightOfTheirJointsOverlap) {
+  RobotDescription bare = model.description();
+  for (LinkDescription& link : bare.links) link.collisions.clear();
+  for (auto& [side, sole] : bare.soles) sole.frame.translation().z() = 0;
+  const RobotModel robot(bare);
+  const CollisionModel soles(robot);
+  ASSERT_EQ(soles.pairs().size(), 1u);
+  RobotData placed(robot);
+  update_positions(robot, robot.rest_state(), placed);
+  const auto left = static_cast<size_t>(robot.sole(Side::left).body),
+             right = static_cast<size_t>(robot.sole(Side::right).body);
+  placed.rotation[left] = placed.rotation[right];
+  placed.position[left] =
+      placed.position[right] + placed.rotation[right] * Eigen::Vector3d(0, 0.04, 0);
+  EXPECT_LT(soles.clearance(soles.pairs()[0], placed, 0.1), -0.001);
+}
+
 }  // namespace
 }  // namespace ayumi

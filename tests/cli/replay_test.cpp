@@ -187,10 +187,76 @@ TEST_F(Replay, TheNoteBesideASequenceIsRead) {
   EXPECT_EQ(refused.exit_code, 1) << refused.out;
   EXPECT_NE(refused.out.find("the run fell at 2 s"), std::string::npos) << refused.out;
   EXPECT_FALSE(fs::exists(folder.path() / "again.csv"));
+  // If the note cannot be written, the table is not written either.
+  fs::create_directory(folder / "again.UNSAFE.csv.txt");
+  const Output lost = ayumi({"export", "i.json", "--format", "hoap", "-o", "again.csv",
+                             "--force-unsafe", "--pushed", "--force"});
+  EXPECT_EQ(lost.exit_code, 3) << lost.out << lost.err;
+  EXPECT_FALSE(fs::exists(folder / "again.UNSAFE.csv"));
   // Another text beside a table is no note.
   write(folder / "h.csv.txt", "unfit: for a walk\n");
-  EXPECT_EQ(ayumi({"replay", "h.csv", "--robot", "hoap1", "--plant", "ayumi"}).out.find("unfit"),
+  EXPECT_EQ(ayumi({"replay", "h.csv", "--robot", "hoap1", "--plant", "ayumi"})
+                .out.find("not for a robot"),
             std::string::npos);
+}
+
+// The run folder of a replay keeps the cautions of its table.
+TEST_F(Replay, TheRunOfAReplayKeepsTheCautionsOfItsTable) {
+  export_bow("hoap", "h.csv");
+  write(folder / "h.csv.txt",
+        "About the joint table beside this file, by ayumi export\n"
+        "disturbances: 0.5 N s on cog at 1 s\n");
+  ASSERT_EQ(
+      ayumi({"replay", "h.csv", "--robot", "hoap1", "--plant", "ayumi", "-o", "out"}).exit_code, 0);
+  for (const std::vector<std::string>& log : {std::vector<std::string>(), {"--log", "ayumi"}}) {
+    std::vector<std::string> words = {"export", "out",       "--format", "hoap",
+                                      "-o",     "again.csv", "--force"};
+    words.insert(words.end(), log.begin(), log.end());
+    const Output refused = ayumi(words);
+    EXPECT_EQ(refused.exit_code, 1) << refused.out << refused.err;
+    EXPECT_NE(refused.out.find("0.5 N s on cog at 1 s"), std::string::npos) << refused.out;
+    EXPECT_FALSE(fs::exists(folder / "again.csv"));
+    words.push_back("--pushed");
+    const Output written = ayumi(words);
+    EXPECT_EQ(written.exit_code, 0) << written.out << written.err;
+    EXPECT_NE(contents(folder / "again.csv.txt").find("disturbances: 0.5 N s on cog at 1 s"),
+              std::string::npos);
+    fs::remove(folder / "again.csv");
+  }
+  write(folder / "h.csv.txt",
+        "About the joint table beside this file, by ayumi export\nunfit: the run fell at 2 s\n");
+  ASSERT_EQ(
+      ayumi({"replay", "h.csv", "--robot", "hoap1", "--plant", "ayumi", "-o", "out", "--force"})
+          .exit_code,
+      0);
+  const Output fell = ayumi({"export", "out", "--format", "hoap", "-o", "third.csv"});
+  EXPECT_EQ(fell.exit_code, 1) << fell.out << fell.err;
+  EXPECT_NE(fell.out.find("the run fell at 2 s"), std::string::npos) << fell.out;
+}
+
+// Motions of other programs in JSON have no head with cautions.
+TEST_F(Replay, AForeignMotionInJsonIsPlayed) {
+  export_bow("poppy-move", "wave.move");
+  const Output out = ayumi({"replay", "wave.move", "--robot", "hoap1", "--plant", "ayumi"});
+  EXPECT_EQ(out.exit_code, 0) << out.out << out.err;
+  EXPECT_NE(out.out.find("poppy-move"), std::string::npos) << out.out;
+  const Output nameless = ayumi({"replay", "wave.move"});
+  EXPECT_EQ(nameless.exit_code, 2) << nameless.err;
+  EXPECT_NE(nameless.err.find("give --robot ROBOT"), std::string::npos) << nameless.err;
+}
+
+// Standard input has no note, even if there is a file with the name that its note would have.
+TEST_F(Replay, StandardInputHasNoNote) {
+  export_bow("hoap", "h.csv");
+  write(folder / "-.txt",
+        "About the joint table beside this file, by ayumi export\nunfit: the run fell at 2 s\n");
+  for (const std::string words :
+       {"replay - --robot hoap1 --plant ayumi", "import - --robot hoap1 -o i.json"}) {
+    const Output out = run_program({"-c", "'" + program_under_test() + "' " + words + " < h.csv"},
+                                   folder.path(), "/bin/sh");
+    EXPECT_EQ(out.exit_code, 0) << out.err;
+    EXPECT_EQ(out.out.find("the run fell"), std::string::npos) << out.out;
+  }
 }
 
 // A file for the program of another robot has no head either, so it gets a note as well.

@@ -34,6 +34,12 @@ void expect_round_trip(const RobotModel& model, unsigned seed) {
     for (const Side side : kSides)
       for (const int dof : ik.leg(side)) state.theta[dof] = model.posture()[dof];
     state.base = BasePose{};
+    RobotState near = wanted;  // a second guess
+    near.theta.array() += 0.02;
+    for (int dof = 0; dof < model.dof_count(); ++dof)
+      if (!ik.solves(dof)) near.theta[dof] = wanted.theta[dof];
+    ASSERT_TRUE(ik.solve(target, near, data).reached) << "trial " << trial;
+    EXPECT_LT((near.theta - wanted.theta).norm(), 1e-8);
     const PostureSolution solution = ik.solve(target, state, data);
     ASSERT_TRUE(solution.reached) << "trial " << trial << " error " << solution.error;
     EXPECT_FALSE(solution.knee_flipped);
@@ -69,7 +75,7 @@ TEST(InverseKinematics, FindsTheKneesBelowInclinedHips) {
 }
 
 // A leg of seven joints has infinitely many postures for one place of its foot. So one joint keeps
-// its angle, and the solution does not depend on the guess.
+// its angle, and two guesses lead to one solution.
 TEST(InverseKinematics, MeetsRandomTargetsWithLegsOfSevenJoints) {
   const RobotModel model = test::standing_model({.hips = "yrpt"});
   EXPECT_EQ(model.leg(Side::left).size(), 7u);
@@ -80,6 +86,46 @@ TEST(InverseKinematics, MeetsRandomTargetsWithLegsOfSevenJoints) {
   }
   EXPECT_FALSE(ik.lacks_joints());
   expect_round_trip(model, 3);
+}
+
+// A leg may be straight where the angle of its knee is not 0.
+TEST(InverseKinematics, TheJointsOfStraightLongLegsDoNotDependOnTheZeroOfTheKnee) {
+  RobotDescription robot = test::standing_model({.hips = "yrpt"}).description();
+  for (const char* const side : {"l_", "r_"})
+    for (const char* const joint : {"hip_pitch", "knee", "ankle_pitch"})
+      robot.postures["home"][std::string(side) + joint] = 0;
+  const RobotModel plain(robot);
+  constexpr double kOffset = 0.5;
+  for (JointDescription& joint : robot.joints)
+    if (joint.name.ends_with("knee")) {
+      joint.origin.linear() = rpy_to_matrix({0, -kOffset, 0}) * joint.origin.linear();
+      robot.postures["home"][joint.name] = kOffset;
+    }
+  const RobotModel shifted(robot);
+  const InverseKinematics at_zero(plain, plain.posture()), elsewhere(shifted, shifted.posture());
+  for (const Side side : kSides) {
+    EXPECT_EQ(at_zero.leg(side), elsewhere.leg(side));
+    EXPECT_FALSE(
+        elsewhere.solves(shifted.find_dof(side == Side::left ? "l_thigh_turn" : "r_thigh_turn")));
+  }
+}
+
+// Hip and ankle turn back by the whole bend of a knee, also if the knee has two joints.
+TEST(InverseKinematics, BentLegsKeepTheirSolesLevel) {
+  for (const bool tandem : {false, true}) {
+    const RobotModel model = test::standing_model({.tandem_knee = tandem});
+    const InverseKinematics ik(model, Eigen::VectorXd::Zero(model.dof_count()));
+    RobotState state = model.rest_state();
+    state.theta = ik.start();
+    RobotData data(model);
+    update_positions(model, state, data);
+    EXPECT_GT(std::abs(state.theta[model.find_dof("l_knee")]), 0.1);
+    for (const Side side : kSides)
+      EXPECT_LT(
+          (sole_pose(model, data, side).linear() - state.base.attitude.toRotationMatrix()).norm(),
+          1e-12)
+          << tandem;
+  }
 }
 
 // The determinant of the Jacobian of a leg of six joints.

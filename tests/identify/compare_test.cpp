@@ -167,6 +167,15 @@ TEST(Compare, SaysInOneLineWhatIsWrongWithTheLoads) {
               "exchange the readings");
 }
 
+// While a robot stands, noise and its posture decide how the load is shared.
+TEST(Compare, FeetOfARobotThatStandsAreNotExchanged) {
+  SensorTable loads = loads_from(0, 0);
+  loads.foot_load.col(0).swap(loads.foot_load.col(1));
+  const Comparison standing = compared(angles_from(0), loads, {.shift = 0, .begin = 0, .end = 0.3});
+  EXPECT_LT(standing.loads[2].correlation, -0.5);
+  EXPECT_TRUE(standing.notes.empty()) << all_notes(standing);
+}
+
 TEST(Compare, SaysInOneLineWhatIsWrongWithTheImu) {
   // The trunk of this robot turns by half a radian and back.
   SimulationLog log = walk_log();

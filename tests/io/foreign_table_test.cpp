@@ -134,12 +134,19 @@ TEST(ForeignTable, AnAssumedUnitIsSaid) {
   EXPECT_EQ(units_of(table("t,l_elbow,r_knee", ',', '.', 1, 0.001)),
             "units: radians (assumed; --unit deg changes this)");
   EXPECT_EQ(units_of(table("t,l_elbow,r_knee", ',', '.', 1, 0.05)),
-            "units: radians (assumed; --unit deg changes this; in radians, 2 joints (r_knee, "
-            "l_elbow) would leave the position limits or be faster than the servos, and in degrees "
-            "none of them would, so the file may be in degrees)");
+            "units: radians (assumed). With radians, 2 joints (r_knee, l_elbow) exceed position or "
+            "speed limits; with degrees, none does. If they are in degrees, use --unit deg");
   EXPECT_EQ(units_of(table("t,l_elbow,r_knee", ',', '.', 1, 0.05), {.degrees = true}),
             "units: degrees, as --unit says");
   EXPECT_EQ(units_of(table("t,l_elbow[deg],r_knee[rad]", ',', '.', 1, 0.001)), "");
+  // Only some columns may state their units.
+  EXPECT_EQ(units_of(table("t,l_elbow[deg],r_knee", ',', '.', 1, 0.001)),
+            "units: radians for r_knee (assumed; --unit deg changes this)");
+  EXPECT_EQ(units_of(table("t,l_elbow[deg],r_knee", ',', '.', 1, 0.05)),
+            "units: radians for r_knee (assumed). With radians, 1 joint (r_knee) exceeds position "
+            "or speed limits; with degrees, it does not. If they are in degrees, use --unit deg");
+  EXPECT_EQ(units_of(table("t,l_elbow[deg],r_knee", ',', '.', 1, 0.05), {.degrees = true}),
+            "units: degrees for r_knee, as --unit says");
 }
 
 // Three decimals at 500 rows per second give accelerations that no motion has.

@@ -212,7 +212,7 @@ TEST(MotionFormats, ForeignFilesAreNamed) {
   EXPECT_NE(refusal_of(std::string("\0\0\0\x18"
                                    "ftypmp42",
                                    12))
-                .find("a film"),
+                .find("a video"),
             std::string::npos);
   EXPECT_NE(refusal_of(std::string("PK\x03\x04\x14\0\0\0", 8)).find("that was cut off"),
             std::string::npos);
@@ -227,6 +227,10 @@ TEST(MotionFormats, ForeignFilesAreNamed) {
   EXPECT_NE(refusal_of("(dp0\nVfps\np1\n", "m.pkl").find("a Python pickle"), std::string::npos);
   EXPECT_NE(refusal_of("Coordinates\nversion=1\nendheader\ntime\tknee\n0\t1\n").find("OpenSim"),
             std::string::npos);
+  for (const char* const htr :
+       {"[Header]\nFileType htr\n", "#Created by a program\r\n[Header]\r\nFileType htr\r\n",
+        "# a remark\n[Header]  # another\nFileType htr # hierarchical\n"})
+    EXPECT_NE(refusal_of(htr).find("an HTR recording"), std::string::npos) << htr;
   EXPECT_NE(refusal_of("<Root type=\"Motion\"/>").find("R+ Motion"), std::string::npos);
   EXPECT_NE(refusal_of("#VRML V2.0 utf8\nPROTO Joint [\n]\n").find("a VRML scene"),
             std::string::npos);

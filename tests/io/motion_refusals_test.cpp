@@ -115,6 +115,12 @@ TEST(MotionRefusals, RareBodyMotionsAreRead) {
   EXPECT_TRUE(lost.motion.zmp.empty());
   EXPECT_NE(notes_of(lost).find("the ZMP is left out, because it is relative to the root"),
             std::string::npos);
+  // The word may also be the type.
+  const ImportedMotion typed =
+      read_motion_rows(body(joints + "  -\n    type: RelativeZMP\n    content: Balance\n" +
+                            frames("[ 0.1, 0, -0.3 ]")),
+                       "m.yaml", hoap1());
+  EXPECT_TRUE(typed.motion.zmp.empty());
 }
 
 // A motion of DeepMimic with y up is the same motion as one with z up.
@@ -263,7 +269,9 @@ TEST(MotionRefusals, Trajectories) {
        {motion(joints + "        positions: [0, 1, 2]\n        times_from_start: [0, 1]\n"),
         "the motion has 3 positions, but 1 joint at 2 times need 2"},
        {motion(joints + "        positions: [0, nan]\n        times_from_start: [0, 1]\n"),
-        "the positions are not finite numbers"},
+        "or they are not finite numbers"},
+       {motion(joints + "        positions: [[0], [1]]\n        times_from_start: [0, 1]\n"),
+        "one list of all positions is needed, but these are rows"},
        {motion(joints + "        positions: [0, 1]\n        times_from_start: [0, x]\n"),
         "the times are not finite numbers"},
        {"play_motion:\n  motions:\n    wave:\n      points:\n        - positions: [0]\n"

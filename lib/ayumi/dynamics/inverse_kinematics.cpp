@@ -70,8 +70,8 @@ constexpr double kLastStep = 1e-10;
 // degrees.
 constexpr double kAcross = 0.7;
 
-// Smallest cosine of the angle between the axes of hip, knee and ankle. Chosen: 15 degrees; a hip
-// whose yaw axis is inclined, as NAO's is by 45 degrees, is not among them.
+// Smallest cosine of the angle between the axes of hip, knee and ankle. Chosen: 15 degrees; this
+// excludes inclined yaw axes, such as NAO's (45 degrees).
 constexpr double kParallel = 0.966;
 
 // Range that a knee needs on its human side [rad]. Chosen: half of kStartBend; a knee with a
@@ -83,13 +83,12 @@ constexpr double kStartBend = 0.3, kKneeRoom = 0.15;
 // limits and cannot lift a foot; with twice, only limits that are placeholders leave so much room.
 constexpr double kCrouchBend = 1.2;
 
-// Joints of the leg that are solved; with this number, every pose of the sole has one solution
+// Number of joints of a leg that are computed. With six, every pose of the sole has one solution
 // nearby. Definition: a pose has six coordinates.
 constexpr size_t kPoseJoints = 6;
 
-// Share of the largest determinant that six joints of a longer leg need. Chosen: any six joints
-// with this share move the sole freely; a hip and a thigh that turn about the same axis have equal
-// shares.
+// A choice of six joints is accepted if its determinant is at least this share of the largest.
+// Chosen: two joints about the same axis give equal determinants, so both choices pass.
 constexpr double kFreeShare = 0.5;
 
 // Sine of the knee's angle up to which a leg counts as straight. Chosen: 1 degree.
@@ -118,7 +117,20 @@ std::vector<int> coupled_joints(const RobotModel& model) {
   return coupled;
 }
 
-// The largest group of these joints whose axes are parallel, if it has three joints; else all.
+// The rotation of the leg, in the direction in which `dof` turns about the axis `across`, per
+// radian of `dof`: the sum for all bodies that the joint moves.
+double turn_of(const RobotModel& model, const RobotData& data, Side side, int dof,
+               const Vector3d& across) {
+  double turn = 0;
+  for (int i = model.sole(side).body; i > 0; i = model.bodies()[i].parent) {
+    const Body& body = model.bodies()[i];
+    if (body.dof == dof) turn += std::copysign(body.ratio, body.ratio * data.axis[i].dot(across));
+  }
+  return turn;
+}
+
+// The largest group of these joints whose axes are parallel, if it has at least three joints;
+// otherwise all joints.
 std::vector<int> parallel_joints(const RobotModel& model, const RobotData& data,
                                  const std::vector<int>& joints) {
   std::vector<int> largest;
@@ -159,10 +171,10 @@ double eliminate(Rows& rows) {
   return determinant;
 }
 
-// A leg of more than six joints reaches a pose in infinitely many ways, and a solution that starts
-// from the sample before it wanders among them. So six joints are solved, and the others keep the
-// angles of postures and keys. Of all choices of six joints that move the sole freely, the one with
-// the joints nearest to the trunk is taken. `J` is the Jacobian of the whole leg.
+// A leg of more than six joints reaches a pose in infinitely many ways, and a solver that starts
+// from the previous sample drifts from one to another. So six joints are solved, and the others
+// keep the angles of postures and keys. Of all choices of six joints that move the sole freely, the
+// one with the joints nearest to the trunk is taken. `J` is the Jacobian of the whole leg.
 std::vector<int> six_joints(const std::vector<int>& leg, const MatrixXd& J) {
   std::vector<bool> chosen(leg.size(), false);
   std::fill_n(chosen.begin(), kPoseJoints, true);
@@ -186,7 +198,7 @@ std::vector<int> six_joints(const std::vector<int>& leg, const MatrixXd& J) {
 
 // Solves A x = b for a symmetric A. On entry, the rows of `rows` are [A, b], of which only the part
 // on and above the diagonal of A is read; they are destroyed. If a pivot is not positive, A is
-// singular but for rounding, and that unknown is 0.
+// singular up to rounding, and the unknown of this row is set to 0.
 void eliminate_symmetric(RowMajorXd& rows, VectorXd& x) {
   const Eigen::Index n = rows.rows();
   for (Eigen::Index k = 0; k < n; ++k) {
@@ -226,9 +238,15 @@ InverseKinematics::InverseKinematics(const RobotModel& model, const VectorXd& re
   if (std::max(legs_[0].size(), legs_[1].size()) > kPoseJoints) {
     find_knees(data);
     RobotState home = model.rest_state();
-    for (int s = 0; s < 2; ++s)  // straight legs cannot move the sole freely
-      if (knees_[s] >= 0 && home.theta[knees_[s]] == 0)
-        home.theta[knees_[s]] = forward_[s] * kStartBend;
+    update_positions(model, home, data);
+    for (const Side side : kSides) {  // straight legs cannot move the sole freely
+      const int s = static_cast<int>(side);
+      if (!(std::abs(knee_bend(data, side)) < kStraightSine)) continue;
+      if (knees_[s] >= 0)
+        home.theta[knees_[s]] += forward_[s] * kStartBend;
+      else  // no joint is known to bend the leg, so all are turned
+        for (const int dof : legs_[s]) home.theta[dof] += kStartBend;
+    }
     update_positions(model, home, data);
     for (const Side side : kSides)
       if (auto& leg = legs_[static_cast<int>(side)]; leg.size() > kPoseJoints) {
@@ -359,14 +377,18 @@ void InverseKinematics::bend_straight_legs(RobotData& data) {
       const Dof& moved = model_->dofs()[joint];
       return w > 0 ? moved.upper - start_[joint] : start_[joint] - moved.lower;
     };
-    // The hip and the ankle each turn back by half the bend of the knee.
+    // The hip and the ankle each turn back by half the bend of the knee. A knee of coupled joints
+    // bends by the sum of their angles.
+    const double bend_ratio =
+        knees_[s] >= 0 ? std::abs(turn_of(*model_, data, side, knee, across)) : 1;
     const auto room = [&](double w) {
-      double least = room_of(knee, w);
+      double least = bend_ratio * room_of(knee, w);
       if (knees_[s] < 0) return least;
       const double turn = forward_[s] * w;  // rotation of the shank about the axis to the left
       for (const int body : {knee_hips_[s], knee_feet_[s]}) {
-        const double own = model_->bodies()[body].ratio * data.axis[body].dot(across);
-        least = std::min(least, 2 * room_of(model_->bodies()[body].dof, own > 0 ? -turn : turn));
+        const int joint = model_->bodies()[body].dof;
+        const double own = turn_of(*model_, data, side, joint, across);
+        least = std::min(least, 2 * std::abs(own) * room_of(joint, own > 0 ? -turn : turn));
       }
       return least;
     };
@@ -376,12 +398,13 @@ void InverseKinematics::bend_straight_legs(RobotData& data) {
     start_[knee] += way * kStartBend;
     if (knees_[s] < 0) continue;
     // The sole stays level, so that Newton starts near a solution with this bend.
-    const double turn = forward_[s] * way * kStartBend / 2;
+    const double turn = forward_[s] * way * kStartBend * bend_ratio / 2;
     for (const int body : {knee_hips_[s], knee_feet_[s]}) {
-      const double own = model_->bodies()[body].ratio * data.axis[body].dot(across);
-      const Dof& moved = model_->dofs()[model_->bodies()[body].dof];
-      double& angle = start_[model_->bodies()[body].dof];
-      angle = std::clamp(angle - (own > 0 ? turn : -turn), moved.lower, moved.upper);
+      const int joint = model_->bodies()[body].dof;
+      const Dof& moved = model_->dofs()[joint];
+      double& angle = start_[joint];
+      angle = std::clamp(angle - turn / turn_of(*model_, data, side, joint, across), moved.lower,
+                         moved.upper);
     }
   }
   state.theta = start_;
@@ -611,7 +634,8 @@ void InverseKinematics::damped(const PostureTarget& target, RobotState& state,
       const Eigen::Matrix3d turn = skew(e.trunk);
       J.block<3, 3>(15, 3) = trunk * (Eigen::Matrix3d::Identity() + turn / 2 + turn * turn / 12);
     }
-    // The part of J' [J, r] on and above the diagonal. A foot has zeros for the other leg.
+    // The part of J' [J, r] on and above the diagonal. The rows of a foot are 0 in the columns of
+    // the other leg.
     H.setZero();
     for (Eigen::Index k = 0; k < rows; ++k) {
       const double* const row = J.data() + k * (unknowns + 1);

@@ -83,10 +83,10 @@ class InverseKinematics {
 
   /// Newton's method on base position and leg joints, which starts from `state`. Other joints are
   /// read from `state`, and the base attitude follows from `target.trunk`. Legs of six joints meet
-  /// the target to 1e-13; of longer legs, the joints that leg() does not list are read from
-  /// `state`. Shorter ones are solved by damped least squares and come within lacking_tolerance().
-  /// `state` is only meaningful if the solution says that the target is reached; `data` is a
-  /// workspace.
+  /// the target to 1e-13. In legs of more than six joints, those that leg() does not list keep
+  /// their angles in `state`. Legs of fewer joints are solved by damped least squares and come
+  /// within lacking_tolerance(). `state` is only meaningful if the solution says that the target is
+  /// reached; `data` is a workspace.
   PostureSolution solve(const PostureTarget& target, RobotState& state, RobotData& data) const;
 
  private:
@@ -130,7 +130,8 @@ class InverseKinematics {
   std::array<std::vector<LegBody>, 2> leg_bodies_;  ///< bodies of each leg, leaves first
   std::vector<int> coupled_;
   std::vector<int> damped_joints_;  ///< unknown joints of damped(): those of the legs, coupled ones
-  /// Bodies from each sole up to the root that these joints move, with their columns among them.
+  /// Per sole: the bodies up to the root that damped_joints_ move, and the index of each in
+  /// damped_joints_.
   std::array<std::vector<LegBody>, 2> sole_chains_;
   std::vector<bool> solved_;
   bool square_ = false;   ///< both legs have six joints

@@ -27,11 +27,17 @@ constexpr double kTouchingOverlap = 1e-6;
 // one passes at a greater height, and soles that stand on each other overlap.
 constexpr double kSoleHeight = 0.25;
 
+// Smallest height of this box, as a share of the longer side of the sole. Chosen: 2 mm for
+// DARwIn-OP (104 mm). A joint may lie in the plane of the sole, and flat boxes in one plane do not
+// overlap.
+constexpr double kLeastSoleHeight = 0.02;
+
 // The box above the outline of a sole, in the frame of its body.
 PlacedShape sole_box(const Sole& sole) {
   Eigen::AlignedBox2d outline;
   for (const Eigen::Vector2d& corner : sole.polygon) outline.extend(corner);
-  const double height = kSoleHeight * std::abs((sole.frame.inverse().translation()).z());
+  const double height = std::max(kSoleHeight * std::abs((sole.frame.inverse().translation()).z()),
+                                 kLeastSoleHeight * outline.sizes().maxCoeff());
   PlacedShape box;
   box.shape = Box{{outline.sizes().x(), outline.sizes().y(), height}};
   box.pose =

@@ -306,14 +306,16 @@ TypeFit fit_type(std::vector<JointRecording> joints, double longest_delay, doubl
   return result;
 }
 
-// Whether the servos of this robot move gradually from one command to the next. At least two groups
-// of joints must show it, and none the opposite: the motor boards of one robot work alike, so the
-// other joints do the same.
-bool all_move_gradually(const std::vector<TypeFit>& fits) {
-  int moving = 0;
-  for (const TypeFit& fit : fits) {
-    if (fit.holds && *fit.holds) return false;
-    moving += fit.holds ? 1 : 0;
+// Whether the servos of this robot move gradually from one command to the next. At least two joints
+// must be in groups that show it, and no group may show the opposite: the motor boards of one robot
+// work alike, so the other joints do the same.
+bool all_move_gradually(const std::vector<TypeFit>& fits,
+                        const std::vector<std::vector<size_t>>& groups) {
+  size_t moving = 0;
+  for (size_t i = 0; i < fits.size(); ++i) {
+    if (!fits[i].holds) continue;
+    if (*fits[i].holds) return false;
+    moving += groups[i].size();
   }
   return moving > 1;
 }
@@ -595,7 +597,7 @@ Identification identify(const RobotModel& model, const RecordedMotion& motion,
     fits[job] = fit_type(joints, longest, model.mass() * kGravity, gradual);
   };
   in_parallel(jobs.size(), options.threads, stop, [&](size_t job) { fit_job(job, false); });
-  const bool gradual = all_move_gradually(fits);
+  const bool gradual = all_move_gradually(fits, jobs);
   in_parallel(jobs.size(), options.threads, stop, [&](size_t job) {
     if (gradual && !fits[job].holds) fit_job(job, true);
     const TypeFit& fit = fits[job];

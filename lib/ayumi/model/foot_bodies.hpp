@@ -6,7 +6,8 @@
 namespace ayumi {
 
 /// Whether a body is a foot, or is carried by one, like a toe. The sole stands for the contacts of
-/// all these bodies with the ground. A foot that is the root does not count what it carries.
+/// all these bodies with the ground. If a foot is the root link, the links that it carries do not
+/// belong to it.
 bool is_of_foot(const RobotModel& model, int body);
 
 }  // namespace ayumi

@@ -90,7 +90,7 @@ class BodyMotionReader {
     else if (is("LinkPosition") || is("MultiLinkPositionSeq"))
       read_root(component, *frames);
     else if (is("ZMP") || is("RelativeZMP") || is("ZMPSeq"))
-      read_zmp(component, *frames, content == "RelativeZMP");
+      read_zmp(component, *frames, is("RelativeZMP"));
     else if (content == "COG" && type == "Vector3Seq")
       motion_.cog = vectors_of(*frames);
     else if (content == "VerticalForce")

@@ -36,6 +36,9 @@ struct MotionFile {
   /// Origin of the unit of the angles: the format defines it, or the reader has converted each
   /// column by its own unit, or the user states it.
   enum class Unit { of_format, of_columns, assumed } unit = Unit::of_format;
+  /// Joints whose columns state no unit, if others state theirs; ImportOptions::degrees has already
+  /// been applied to them.
+  std::vector<std::string> without_unit = {};
   int file_rows = 0;          ///< data rows of the file; 0 if there are as many as rows()
   TableCaution caution = {};  ///< caution of the run from which the table comes
   std::string sequence = {};  ///< bytes of a HOAP sequence, which are kept for an unchanged export

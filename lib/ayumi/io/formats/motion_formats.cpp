@@ -58,7 +58,6 @@ const std::vector<Foreign>& foreign_files() {
       {"\x57\xE0\xE0\x57\x10\xC0\xC0\x10", "a Havok animation (.hkx)", retarget},
       {"\x1E\x0D\xB0\xCA\xCE\xFA\x11\xD0", "a Havok animation (.hkx)", retarget},
       {"BLENDER", "a scene of Blender", retarget},
-      {"[Header]\nFileType htr", "an HTR recording of a person", retarget},
       {"NO_OF_FRAMES", "a recording of markers of Qualisys (.tsv)", retarget},
       {"%YAML 1.1\n%TAG !u! tag:unity3d.com", "an animation of Unity (.anim)", retarget},
       {"ULog\x01\x12\x35", "a flight log of PX4 (ULog)", "write its joint angles as CSV"},
@@ -75,7 +74,7 @@ const std::vector<Foreign>& foreign_files() {
       {"\x89PNG", "a picture", "name the motion file"},
       {"\xFF\xD8\xFF", "a picture", "name the motion file"},
       {"GIF8", "a picture", "name the motion file"},
-      {"\x1A\x45\xDF\xA3", "a film", "name the motion file"},
+      {"\x1A\x45\xDF\xA3", "a video", "name the motion file"},
       {"BZh9", "a file compressed with bzip2", "unpack it first"},
       {"\xFD"
        "7zXZ",
@@ -164,6 +163,15 @@ bool is_asf(const MotionInput& source) {
   return false;
 }
 
+// A recording begins with its header, after remarks that begin with `#`.
+bool is_htr(const MotionInput& source) {
+  const std::vector<std::string_view> lines = head_lines(source);
+  const auto first = std::find_if(lines.begin(), lines.end(),
+                                  [](std::string_view line) { return line.front() != '#'; });
+  return lines.end() - first > 1 && first[0].starts_with("[Header]") &&
+         first[1].starts_with("FileType htr");
+}
+
 // The kinds of files that their first bytes prove.
 const Foreign* signed_kind(const MotionInput& source) {
   for (const Foreign& kind : foreign_files())
@@ -173,7 +181,7 @@ const Foreign* signed_kind(const MotionInput& source) {
   if (source.bytes.size() >= 512 && source.bytes[1] == 'P' &&
       static_cast<unsigned char>(source.bytes[0]) < 16)
     return &c3d;
-  static const Foreign film = {"", "a film or a sound", "name the motion file"};
+  static const Foreign film = {"", "a video or audio file", "name the motion file"};
   const std::string_view bytes = source.bytes;
   if (bytes.starts_with("RIFF") || (bytes.size() > 8 && bytes.substr(4, 4) == "ftyp")) return &film;
   static const Foreign opensim = {"", "a motion of OpenSim (.mot, .sto)",
@@ -185,6 +193,9 @@ const Foreign* signed_kind(const MotionInput& source) {
                                    "retarget its motion to the robot first, and write the joint "
                                    "angles as CSV"};
   if (is_asf(source)) return &skeleton;
+  static const Foreign htr = {"", "an HTR recording of a person",
+                              "retarget it to the robot first, and write the joint angles as CSV"};
+  if (is_htr(source)) return &htr;
   return nullptr;
 }
 
@@ -207,7 +218,7 @@ const Foreign* text_kind(const MotionInput& source) {
   static const Foreign torch = {"", "a file of PyTorch",
                                 "load it in Python and save its arrays with numpy.savez"};
   if (source.bytes.starts_with("PK")) {
-    // Definition: an archive ends with a directory, whose end has this sign.
+    // Definition: a ZIP archive ends with a directory; its last record has this signature.
     static const Foreign cut = {"", "the beginning of an archive (.npz) that was cut off",
                                 "copy or save it again"};
     if (source.bytes.find("PK\x05\x06") == std::string::npos) return &cut;

@@ -514,8 +514,7 @@ Rows even_rows(const MotionFile& motion, const Rows& rows, const ImportOptions& 
         ErrorCode::bad_file, {file},
         "the motion lasts " + text::brief(times.back()) + " s, which is more than " +
             std::to_string(kMostRows) + " rows at this rate; cut the file" +
-            (format == "csv" ? ", or name the column of its times t[ms] if they are in milliseconds"
-                             : ""));
+            (format == "csv" ? ". If the times are in milliseconds, name their column t[ms]" : ""));
   const Eigen::Index count =
       spacing.even && !keys ? rows.rows() : static_cast<Eigen::Index>(std::floor(last + 1e-3)) + 1;
   if (keys)
@@ -648,8 +647,8 @@ void say_rough_angles(const RobotModel& model, ImportedMotion& imported) {
 
 // Noise of the root moves the whole robot, so it moves the ZMP at once.
 void say_rough_root(ImportedMotion& imported) {
-  // Acceleration of the noise above which a note is written [m/s^2]. Derived: a tenth of gravity
-  // moves the ZMP by a tenth of the COG height, which is half of a sole.
+  // Acceleration of the noise above which a note is written [m/s^2]. Derived: 0.1 g
+  // moves the ZMP by 0.1 of the COG height, about half the width of a sole.
   constexpr double kSaid = 0.1 * kGravity;
   const std::vector<BasePose>& base = imported.motion.base;
   if (base.empty()) return;
@@ -703,12 +702,14 @@ void smooth_angles(const RobotModel& model, const ImportOptions& options,
 }
 
 // Joints that leave their position limits, or are faster than their servos, and would do neither if
-// the angles were in degrees. The default profile of the robot is taken.
-std::string hint_of_degrees(const RobotModel& model, const RawMotion& motion) {
+// the angles were in degrees. Joints of `stated` are left out, because the file states their unit.
+// The default profile of the robot is taken.
+std::string hint_of_degrees(const RobotModel& model, const RawMotion& motion,
+                            const std::vector<bool>& stated) {
   std::vector<std::string> suspicious;
   for (int i = 0; i < model.dof_count(); ++i) {
     const Dof& dof = model.dofs()[static_cast<size_t>(i)];
-    if (dof.prismatic) continue;
+    if (dof.prismatic || stated[static_cast<size_t>(i)]) continue;
     const Eigen::VectorXd angle = motion.theta.col(i);
     const Eigen::Index rows = angle.size();
     const double fastest =
@@ -723,10 +724,28 @@ std::string hint_of_degrees(const RobotModel& model, const RawMotion& motion) {
   }
   if (suspicious.empty()) return "";
   constexpr size_t kNamed = 3;  // largest number of names. Chosen: a line that a person still reads
-  return "; in radians, " + text::counted(suspicious.size(), "joint") + " (" +
-         text::join_first(suspicious, kNamed) +
-         ") would leave the position limits or be faster than the servos, and in degrees none of "
-         "them would, so the file may be in degrees";
+  const bool one = suspicious.size() == 1;
+  return ". With radians, " + text::counted(suspicious.size(), "joint") + " (" +
+         text::join_first(suspicious, kNamed) + ") " + (one ? "exceeds" : "exceed") +
+         " position or speed limits; with degrees, " + (one ? "it does not" : "none does") +
+         ". If they are in degrees, use --unit deg";
+}
+
+// What is assumed about the unit of the angles for which the file states none; empty if it states
+// all units.
+std::string assumed_unit(const MotionFile& read, const RobotModel& model, bool degrees,
+                         const RawMotion& motion) {
+  const bool all = read.unit == MotionFile::Unit::assumed;
+  if (!all && read.without_unit.empty()) return "";
+  std::vector<bool> stated(static_cast<size_t>(model.dof_count()), !all);
+  for (const std::string& joint : read.without_unit)
+    if (const int dof = find_joint(model, joint); dof >= 0)
+      stated[static_cast<size_t>(dof)] = false;
+  const std::string words = std::string("units: ") + (degrees ? "degrees" : "radians") +
+                            (all ? "" : " for " + shortened(read.without_unit));
+  if (degrees) return words + ", as --unit says";
+  const std::string hint = hint_of_degrees(model, motion, stated);
+  return words + (hint.empty() ? " (assumed; --unit deg changes this)" : " (assumed)" + hint);
 }
 
 void read_rows(const std::string& bytes, const std::string& file, const RobotModel& model,
@@ -736,15 +755,13 @@ void read_rows(const std::string& bytes, const std::string& file, const RobotMod
   refuse_absurd(read, model, file);
   result.filled.insert(result.filled.end(), read.notes.begin(), read.notes.end());
   const bool assumed = read.unit == MotionFile::Unit::assumed;
-  const size_t unit_note = result.filled.size();
-  if (assumed)
-    result.filled.push_back(options.degrees ? "units: degrees, as --unit says"
-                                            : "units: radians (assumed; --unit deg changes this");
+  const auto unit_note = static_cast<std::ptrdiff_t>(result.filled.size());
   const Rows rows = rows_of(read, columns, model, options.degrees && assumed);
   set_motion(even_rows(read, rows, options, file, result.format, result.motion.dt, result.filled),
              read, model.dof_count(), result.motion);
-  if (assumed && !options.degrees)
-    result.filled[unit_note] += hint_of_degrees(model, result.motion) + ")";
+  if (const std::string unit = assumed_unit(read, model, options.degrees, result.motion);
+      !unit.empty())
+    result.filled.insert(result.filled.begin() + unit_note, unit);
   result.motion.support =
       supports_on_ticks(read, static_cast<size_t>(result.motion.theta.rows()), result.motion.dt);
   result.rows = read.file_rows > 0 ? read.file_rows : static_cast<int>(read.rows());

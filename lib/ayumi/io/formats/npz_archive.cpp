@@ -70,8 +70,8 @@ void take_numbers(const std::string& bytes, size_t at, size_t count, NpyArray& a
   }
 }
 
-// The items of an array of this shape in the order of C, whose last index is the fastest. In the
-// file they are in the order of Fortran, whose first index is the fastest.
+// The items of an array of this shape in C order (the last index varies fastest); the file has
+// Fortran order (the first index varies fastest).
 template <typename Item>
 std::vector<Item> in_order_of_c(const std::vector<Item>& file, const std::vector<size_t>& shape) {
   std::vector<Item> items;

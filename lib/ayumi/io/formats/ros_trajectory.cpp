@@ -91,7 +91,9 @@ Trajectory trajectory_of_lists(const MotionInput& source, const YamlNode& motion
   one.joints = names_in(source, *names);
   const size_t width = one.joints.size(), rows = times->numbers.size();
   if (!positions->items.empty())
-    source.refuse(yaml_line(*positions), "the positions are not finite numbers");
+    source.refuse(yaml_line(*positions),
+                  "one list of all positions is needed, but these are rows, or they are not finite "
+                  "numbers; join the rows to one list, or correct the numbers");
   if (!times->items.empty()) source.refuse(yaml_line(*times), "the times are not finite numbers");
   if (positions->numbers.size() != rows * width)
     source.refuse(yaml_line(*positions),

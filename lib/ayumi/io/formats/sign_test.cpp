@@ -33,6 +33,42 @@ double wanted_change(const RobotModel& model, const Dof& dof, double from) {
   return up >= down ? std::max(up, 0.0) : -std::max(down, 0.0);
 }
 
+/// The first two bodies that overlap with these joint angles, in words; empty if none do.
+std::string overlapping(const RobotModel& model, const CollisionModel& collisions,
+                        const Eigen::VectorXd& theta) {
+  RobotState state = model.rest_state();
+  state.theta = theta;
+  RobotData data(model);
+  update_positions(model, state, data);
+  const auto name = [&](int body) { return model.bodies()[static_cast<size_t>(body)].name; };
+  for (const CollisionModel::Pair& pair : collisions.pairs())
+    if (collisions.clearance(pair, data, 0) < 0) return name(pair.a) + " and " + name(pair.b);
+  return "";
+}
+
+/// The angle to which a joint moves in its test. If parts of the robot would overlap there, the
+/// joint moves in the other direction.
+double free_end(const RobotModel& model, const CollisionModel& collisions,
+                const Eigen::VectorXd& start, int j) {
+  const Dof& dof = model.dofs()[static_cast<size_t>(j)];
+  const double wanted = wanted_change(model, dof, start[j]);
+  std::string overlap;
+  for (const double change : {wanted, -wanted}) {
+    Eigen::VectorXd moved = start;
+    moved[j] += change;
+    const double margin = margin_of(model, dof);
+    if (change == -wanted && dof.limited &&
+        (moved[j] < dof.lower + margin || moved[j] > dof.upper - margin))
+      break;
+    const std::string found = overlapping(model, collisions, moved);
+    if (found.empty()) return moved[j];
+    if (overlap.empty()) overlap = found;
+  }
+  fail(ErrorCode::bad_model, "sign test of " + dof.name + ": " + overlap +
+                                 " overlap while this joint moves. Name another start posture with "
+                                 "--posture");
+}
+
 double share_at(double t) {
   if (t < kRest + kMove) return minimum_jerk((t - kRest) / kMove).value;
   return 1 - minimum_jerk((t - kRest - kMove - kHold) / kMove).value;
@@ -49,34 +85,31 @@ Eigen::VectorXd sign_test_start(const RobotModel& model) {
                  upper = dof.upper - margin;
     start[j] = lower > upper ? 0.5 * (lower + upper) : std::clamp(0.0, lower, upper);
   }
-  RobotState state = model.rest_state();
-  state.theta = start;
-  RobotData data(model);
-  update_positions(model, state, data);
-  const CollisionModel collisions(model);
-  for (const CollisionModel::Pair& pair : collisions.pairs()) {
-    if (collisions.clearance(pair, data, 0) >= 0) continue;
-    const auto name = [&](int body) { return model.bodies()[static_cast<size_t>(body)].name; };
-    fail(ErrorCode::bad_model,
-         "robot '" + model.name() + "': " + name(pair.a) + " and " + name(pair.b) +
-             " overlap when every joint is at 0, so a sign test cannot begin there; name another "
-             "first posture with --posture");
-  }
+  const std::string overlap = overlapping(model, CollisionModel(model), start);
+  if (!overlap.empty())
+    fail(ErrorCode::bad_model, "robot '" + model.name() + "': " + overlap +
+                                   " overlap with every joint at 0 or at its limit nearest to 0. "
+                                   "Name another start posture with --posture");
   return start;
 }
 
 std::vector<SignTest> sign_tests(const RobotModel& model, const Eigen::VectorXd& start, double dt) {
   std::vector<SignTest> tests;
+  const CollisionModel collisions(model);
+  const std::string overlap = overlapping(model, collisions, start);
+  if (!overlap.empty())
+    fail(ErrorCode::bad_model, "robot '" + model.name() + "': " + overlap +
+                                   " overlap in the start posture. Name another one with "
+                                   "--posture");
   const auto rows = static_cast<size_t>(std::lround((2 * kRest + 2 * kMove + kHold) / dt)) + 1;
   for (int j = 0; j < model.dof_count(); ++j) {
-    const Dof& dof = model.dofs()[static_cast<size_t>(j)];
     const auto at = static_cast<size_t>(j);
     // Passive joints have no test.
     if (model.limits().has_servo[at] && model.limits().servo[at].kp <= 0) continue;
     SignTest test;
     test.dof = j;
     test.from = start[j];
-    test.to = start[j] + wanted_change(model, dof, start[j]);
+    test.to = free_end(model, collisions, start, j);
     test.table.dt = dt;
     test.table.joints = model.dof_names();
     for (size_t k = 0; k < rows; ++k) {

@@ -1,7 +1,7 @@
 #pragma once
-// Tables for the first day with a robot whose encoder signs are not yet verified. There is one
-// slow, small motion for each joint, and back, while the robot hangs free. The other joints rest at
-// an angle at which their encoders read 0, because there a wrong sign has no effect.
+// Tables for the first day with a robot whose encoder signs are not yet verified. Each file moves
+// one joint slowly and by a small angle, and back, while the robot hangs free. The other joints
+// have the target 0 where possible, because a wrong sign does not change 0.
 
 #include <string>
 #include <vector>
@@ -29,7 +29,9 @@ Eigen::VectorXd sign_test_start(const RobotModel& model);
 /// One test for every joint with a motor, in the order of the devices (or of the joints if there
 /// are none), with a row every `dt` [s]. Each test begins in the posture `start`. The joint moves
 /// by 5 degrees (10 mm) in its positive direction. It moves in the negative direction, or by less,
-/// if its position limits require this. Throws Error(bad_model) if no joint has a motor.
+/// if its position limits require this, and in the other direction if parts of the robot would
+/// overlap. Throws Error(bad_model) if no joint has a motor, or if parts overlap in the posture
+/// `start` or at the end of a motion in either direction.
 std::vector<SignTest> sign_tests(const RobotModel& model, const Eigen::VectorXd& start, double dt);
 
 }  // namespace ayumi

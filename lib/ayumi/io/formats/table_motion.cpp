@@ -58,9 +58,10 @@ AngleUnit rename_column(NumberTable& table, Eigen::Index i, const RobotModel& mo
   return unit.empty() ? AngleUnit::missing : AngleUnit::stated;
 }
 
-// Returns the origin of the unit. If no column states one, the importer assumes one.
-MotionFile::Unit rename_columns(NumberTable& table, const RobotModel& model,
-                                const ImportOptions& options, const std::string& file) {
+// Sets the origin of the unit. If no column states one, the importer assumes one; if only some
+// columns state none, these are named.
+void rename_columns(NumberTable& table, const RobotModel& model, const ImportOptions& options,
+                    const std::string& file, MotionFile& motion) {
   std::vector<Eigen::Index> without_unit;
   bool stated = false;
   for (Eigen::Index i = 0; i < table.values.cols(); ++i) {
@@ -75,7 +76,11 @@ MotionFile::Unit rename_columns(NumberTable& table, const RobotModel& model,
     if (std::find(table.columns.begin() + static_cast<std::ptrdiff_t>(i) + 1, table.columns.end(),
                   table.columns[i]) != table.columns.end())
       refuse_table(file, "the column '" + table.columns[i] + "' is given twice");
-  return assumed ? MotionFile::Unit::assumed : MotionFile::Unit::of_columns;
+  motion.unit = assumed ? MotionFile::Unit::assumed : MotionFile::Unit::of_columns;
+  if (!assumed)
+    for (const Eigen::Index i : without_unit)
+      // Without "theta.".
+      motion.without_unit.push_back(table.columns[static_cast<size_t>(i)].substr(6));
 }
 
 std::vector<Eigen::Vector3d> vectors_of(const NumberTable& table, const std::vector<int>& at) {
@@ -138,7 +143,7 @@ MotionFile read_number_motion(const MotionInput& source, NumberTable table) {
   name_root_columns(
       table, file, [&](const std::string& column) { return find_joint(source.model, column) >= 0; },
       motion.notes);
-  motion.unit = rename_columns(table, source.model, source.options, file);
+  rename_columns(table, source.model, source.options, file, motion);
   const bool timed = table.find("t[s]") >= 0;
   if (!timed && !(source.options.rate > 0))
     refuse_table(file,
