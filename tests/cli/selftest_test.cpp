@@ -49,7 +49,8 @@ TEST(Selftest, SaysWhatDiffers) {
   const Output output =
       selftest({}, {"walk", "jump", "--robot-path", folder / "robots"}, folder.path());
   EXPECT_EQ(output.exit_code, 1) << output.out << output.err;
-  EXPECT_NE(output.out.find("different  walk: a walk with a push"), std::string::npos) << output.out;
+  EXPECT_NE(output.out.find("different  walk: a walk with a push"), std::string::npos)
+      << output.out;
   EXPECT_EQ(output.out.find("a walk by VIIP"), std::string::npos) << "only the named jobs run";
 }
 
