@@ -143,7 +143,9 @@ TEST_F(Replay, TheSignTestMovesOneJointAtATime) {
         "l_knee: 0.0 deg to 5.0 deg,<br>counterclockwise seen from the left",
         "l_hip_yaw: 0.0 deg to 5.0 deg,<br>counterclockwise seen from above",
         "r_elbow: 0.0 deg to -5.0 deg,<br>counterclockwise seen from the right",
-        "r_hip_roll: 0.0 deg to 5.0 deg,<br>counterclockwise seen from the front"})
+        "l_hip_roll: 0.0 deg to 5.0 deg,<br>counterclockwise seen from the front",
+        // Inwards, the right foot would meet the left one.
+        "r_hip_roll: 0.0 deg to -5.0 deg,<br>clockwise seen from the front"})
     EXPECT_NE(sheet.find(words), std::string::npos) << words << sheet;
   // The sheet warns if a test begins elsewhere.
   EXPECT_EQ(contents(folder / "signs/sheet.html").find("Caution"), std::string::npos);
