@@ -43,7 +43,8 @@ std::string block_of(const std::string& pointer) {
 // Whether an item is in a block that is in another block, as "/keyframes/2/keyframes/0/keyframes/1"
 // is. Its rounds cannot be told apart by the pointer.
 bool is_nested(const std::string& pointer) {
-  constexpr long kInOneBlock = 4;  // "/list/block/list/item"
+  // Number of slashes in the pointer of an item in one block. Definition: "/list/block/list/item".
+  constexpr long kInOneBlock = 4;
   return std::count(pointer.begin(), pointer.end(), '/') > kInOneBlock;
 }
 

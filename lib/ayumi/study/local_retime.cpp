@@ -155,8 +155,9 @@ class LocalSearch {
     result_ = first;
     if (take_uniform(path_scale, path_pattern, path)) return;
     // Flights keep their pace.
+    double slower = path_scale;
     for (int n = 1; n <= kMostSlower && !keys_fly(pattern_); ++n) {
-      const double slower = path_scale * std::pow(kSlowerPath, n);
+      slower *= kSlowerPath;
       report(progress_, {"retime", -1, "uniform scale " + text::fixed(slower, 4)});
       try {
         const Pattern pattern = at_scale(slower);
@@ -192,7 +193,9 @@ class LocalSearch {
     play.world = *options_.world;
     Simulator run(model_, series, play);
     run.gather_verdict_only();
-    constexpr long kTicks = 100;  // chosen: a fallen robot takes long to simulate
+    // Number of ticks between two looks at whether the robot fell. Chosen: a fallen robot takes
+    // long to simulate, and a look takes no time.
+    constexpr long kTicks = 100;
     try {
       while (!run.fell() && run.advance(kTicks, progress_)) continue;
     } catch (const Error& error) {  // the state of a fall may become infinite

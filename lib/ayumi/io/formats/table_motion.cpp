@@ -79,8 +79,8 @@ void rename_columns(NumberTable& table, const RobotModel& model, const ImportOpt
   motion.unit = assumed ? MotionFile::Unit::assumed : MotionFile::Unit::of_columns;
   if (!assumed)
     for (const Eigen::Index i : without_unit)
-      // Without "theta.".
-      motion.without_unit.push_back(table.columns[static_cast<size_t>(i)].substr(6));
+      motion.without_unit.push_back(
+          column_name(table.columns[static_cast<size_t>(i)]).name.substr(6));  // without "theta."
 }
 
 std::vector<Eigen::Vector3d> vectors_of(const NumberTable& table, const std::vector<int>& at) {
