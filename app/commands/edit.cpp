@@ -239,7 +239,7 @@ std::string in_words(const std::vector<BindingLimit>& limits) {
 std::string in_words(const LocalPace& pace, bool pauses_kept) {
   std::string out = "  the motion takes " + text::brief(pace.scale) + " times its original time\n";
   if (pace.uniform)
-    out += std::string("  this is the uniform pace") +
+    out += std::string("  this is a uniform pace") +
            (pauses_kept ? ", with pauses of their original length" : "") +
            ", because the robot falls in open loop with the local timings that were tried\n";
   else

@@ -322,7 +322,9 @@ std::vector<std::string> imu_complaints(const std::vector<ComparedCurve>& imu) {
     if (!unit.empty()) lines.push_back(unit);
   }
   if (!opposite.empty())
-    lines.push_back("the robot turns against the readings of " + opposite + "; change their sign");
+    lines.push_back(
+        "the readings of " + opposite +
+        " have the opposite sign of the angular velocity in the run; change their sign");
   return lines;
 }
 

@@ -145,7 +145,7 @@ class LocalSearch {
     const LocalPace first = result_;
     for (const double share : kOtherMargins) {
       if (share * half >= options_.path.most_margin) break;  // more than the caller allows
-      report(progress_, {"retime", -1, "the robot falls in open loop: another timing"});
+      report(progress_, {"retime", -1, "the robot falls in open loop; another timing is tried"});
       search(scale, share * half);
       if (result_.found && stands(result_.series)) {
         result_.stands = true;

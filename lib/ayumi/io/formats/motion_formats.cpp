@@ -58,7 +58,7 @@ const std::vector<Foreign>& foreign_files() {
       {"\x57\xE0\xE0\x57\x10\xC0\xC0\x10", "a Havok animation (.hkx)", retarget},
       {"\x1E\x0D\xB0\xCA\xCE\xFA\x11\xD0", "a Havok animation (.hkx)", retarget},
       {"BLENDER", "a scene of Blender", retarget},
-      {"NO_OF_FRAMES", "a recording of markers of Qualisys (.tsv)", retarget},
+      {"NO_OF_FRAMES", "a Qualisys recording of markers (.tsv)", retarget},
       {"%YAML 1.1\n%TAG !u! tag:unity3d.com", "an animation of Unity (.anim)", retarget},
       {"ULog\x01\x12\x35", "a flight log of PX4 (ULog)", "write its joint angles as CSV"},
       {"ARROW1", "a file of Apache Arrow", "write its joint angles as CSV"},
