@@ -28,6 +28,13 @@ class Replay : public testing::Test {
         ayumi({"export", "p.json", "--format", format, "-o", file, "-q", "--ramp", "0.5"});
     ASSERT_EQ(out.exit_code, 0) << out.err << out.out;
   }
+  /// Writes the sign tests of HOAP-1 into the folder signs. Returns their list in the JSON output.
+  Json sign_tests(const std::string& format) {
+    const Output out = ayumi(
+        {"export", "hoap1", "--sign-test", "--format", format, "-o", "signs", "--json", "-q"});
+    EXPECT_EQ(out.exit_code, 0) << out.err;
+    return out.exit_code == 0 ? Json::parse(out.out).at("tests") : Json::array();
+  }
   Folder folder;
 };
 
@@ -106,10 +113,7 @@ TEST_F(Replay, BadTablesLeaveNothing) {
 // There are one file and one picture per joint; only this joint moves, by 5 degrees. Every test
 // begins with all encoders at 0, because a joint with a wrong sign would otherwise jump.
 TEST_F(Replay, TheSignTestMovesOneJointAtATime) {
-  const Output out =
-      ayumi({"export", "hoap1", "--sign-test", "--format", "hoap", "-o", "signs", "--json", "-q"});
-  ASSERT_EQ(out.exit_code, 0) << out.err;
-  const Json tests = Json::parse(out.out).at("tests");
+  const Json tests = sign_tests("hoap");
   ASSERT_EQ(tests.size(), 20u);
   // The folder, the tables, the pictures and the sheet.
   EXPECT_EQ(folder.files().size(), 1 + 20u + 20 + 1);
@@ -158,10 +162,7 @@ TEST_F(Replay, TheSignTestMovesOneJointAtATime) {
 
 // From the right, the right arm and leg would hide the joints of the left side.
 TEST_F(Replay, TheSignTestShowsEachJointFromItsOwnSide) {
-  const Output out =
-      ayumi({"export", "hoap1", "--sign-test", "--format", "csv", "-o", "signs", "--json", "-q"});
-  ASSERT_EQ(out.exit_code, 0) << out.err;
-  const Json tests = Json::parse(out.out).at("tests");
+  const Json tests = sign_tests("csv");
   ASSERT_EQ(tests.size(), 20u);
   for (const Json& test : tests) {
     const std::string joint = test.at("joint"), seen = test.at("seen_from"),
