@@ -257,13 +257,12 @@ InverseKinematics::InverseKinematics(const RobotModel& model, const VectorXd& re
   }
   for (const auto& leg : legs_)
     for (const int dof : leg) solved_[dof] = true;
-  square_ = legs_[0].size() == 6 && legs_[1].size() == 6;
   lacking_ = std::min(legs_[0].size(), legs_[1].size()) < 6;
   if (lacking_) {
     coupled_ = coupled_joints(model);
     for (const int dof : coupled_) solved_[dof] = true;
   }
-  if (square_)
+  if (!lacking_)
     for (const Side side : kSides) find_leg_bodies(side);
   damped_joints_ = legs_[0];
   damped_joints_.insert(damped_joints_.end(), legs_[1].begin(), legs_[1].end());
@@ -363,13 +362,13 @@ void InverseKinematics::bend_straight_legs(RobotData& data) {
   update_positions(*model_, state, data);
   for (const Side side : kSides) {
     const int s = static_cast<int>(side);
-    const int knee = knees_[s] >= 0 ? knees_[s] : square_ ? legs_[s][3] : -1;
+    const int knee = knees_[s] >= 0 ? knees_[s] : lacking_ ? -1 : legs_[s][3];
     if (knee < 0) continue;
     const Dof& dof = model_->dofs()[knee];
     const double length =
         (sole_pose(*model_, data, side).translation() - data.pose(dof.body).translation()).norm();
-    const bool straight = square_ ? std::abs(bend(data)[s]) < 1e-2 * length * length * length
-                                  : std::abs(knee_bend(data, side)) < kStraightSine;
+    const bool straight = !lacking_ ? std::abs(bend(data)[s]) < 1e-2 * length * length * length
+                                    : std::abs(knee_bend(data, side)) < kStraightSine;
     if (!straight) continue;
     double way = knees_[s] >= 0 ? forward_[s] : 1.0;
     const Vector3d across = data.rotation[model_->trunk_body()].col(1);
@@ -491,7 +490,7 @@ Eigen::Matrix<double, 3, 6> InverseKinematics::leg_cog_jacobian(RobotData& data,
 }
 
 std::array<double, 2> InverseKinematics::bend(const RobotData& data) const {
-  if (!square_) return {knee_bend(data, Side::left), knee_bend(data, Side::right)};
+  if (lacking_) return {knee_bend(data, Side::left), knee_bend(data, Side::right)};
   std::array<double, 2> determinant;
   for (const Side side : kSides) {
     SixRows rows = SixRows::Zero();
@@ -702,9 +701,9 @@ PostureSolution InverseKinematics::solve(const PostureTarget& target, RobotState
   };
   if (!lacking_) set_attitude(target, state, data);
   std::array<double, 2> now;
-  if (square_) solution.reached = newton(target, state, data, solution.error, now);
+  if (!lacking_) solution.reached = newton(target, state, data, solution.error, now);
   if (!solution.reached) {
-    if (square_) {
+    if (!lacking_) {
       for (int dof = 0; dof < model_->dof_count(); ++dof)
         if (solved_[dof]) state.theta[dof] = start_[dof];
       state.base.position = target.cog - (data.cog - data.base_position);
@@ -740,7 +739,7 @@ PostureSolution InverseKinematics::solve(const PostureTarget& target, RobotState
   }
   if (solution.reached)
     for (int s = 0; s < 2; ++s)
-      if (now[s] * bend_[s] < 0 || (square_ && now[s] * bend_[s] == 0)) {
+      if (now[s] * bend_[s] < 0 || (!lacking_ && now[s] * bend_[s] == 0)) {
         solution.knee_flipped = true;
         solution.foot = kSides[s];
       }

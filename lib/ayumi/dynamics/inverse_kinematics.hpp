@@ -134,8 +134,7 @@ class InverseKinematics {
   /// damped_joints_.
   std::array<std::vector<LegBody>, 2> sole_chains_;
   std::vector<bool> solved_;
-  bool square_ = false;   ///< both legs have six joints
-  bool lacking_ = false;  ///< a leg has fewer than six joints
+  bool lacking_ = false;  ///< a leg has fewer than six joints; otherwise both have six
   std::array<int, 2> knees_ = {-1, -1};
   /// Bodies of the joints across the trunk below the knees.
   std::array<int, 2> knee_feet_ = {-1, -1};
