@@ -699,8 +699,8 @@ void add_edit(Command& app, Context& context) {
       "With --to-limits: slow the motion down only at the times at which a limit requires this.");
   retime_command
       .add_option("--margin", options.margin,
-                  "With --local: the ZMP need not keep a larger distance than this from the edge "
-                  "of the support [m]. A smaller value allows a faster motion. Default: an eighth "
+                  "With --local: largest distance from the edge of the support that the ZMP must "
+                  "keep [m]. A smaller value allows a faster motion. Default: an eighth "
                   "of the width of the sole, or 80 % of the distance that the result has without "
                   "--local, whichever is larger.")
       ->check(number_within(0.0, 1.0))

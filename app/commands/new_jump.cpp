@@ -251,7 +251,7 @@ void add_new_jump(Command& parent, Context& context) {
       ->type_name("M");
   command
       ->add_option("--stoop", options.stoop,
-                   "Depth of the stoop below the COG height at lift-off [m]" +
+                   "How far the COG is lowered before the jump, below its height at lift-off [m]" +
                        scaled(JumpParameters().stoop))
       ->type_name("M");
   command
