@@ -7,6 +7,8 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 programs=("$@")
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
+trap 'cat "$folder/errors" >&2' ERR  # what a command says that fails
+touch "$folder/errors"
 TIMEFORMAT='%U %S'
 
 "${programs[0]}" new walk --steps 13 -o "$folder/walk.json" >/dev/null 2>&1  # 9.84 s
@@ -19,7 +21,7 @@ compare() {  # TITLE RUNS ARGUMENTS...
   for ((i = 0; i < runs; ++i)); do
     for p in "${!programs[@]}"; do
       rm -rf "$folder/out"
-      { time "${programs[p]}" "$@" >/dev/null 2>/dev/null; } 2>&1 |
+      { time "${programs[p]}" "$@" >/dev/null 2>"$folder/errors"; } 2>&1 |
         awk '{ print $1 + $2 }' >>"$folder/times$p"
     done
   done

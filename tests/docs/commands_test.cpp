@@ -25,6 +25,7 @@ const NotRun kNotRun[] = {
     {"cpack ", "makes packages: tests/install"},
     {"ctest ", "runs all tests, this one too"},
     {"build/", "runs a test program of the build folder"},
+    {"ayumi selftest", "takes 17 s of processor time: cli.Selftest runs all its jobs"},
     {"valgrind ", "measures the benchmarks, which are built by hand"},
     {"sudo ", "installs packages"},
     {"git ", "needs the network or a repository"},
