@@ -698,11 +698,12 @@ void add_edit(Command& app, Context& context) {
       "--local", options.local,
       "With --to-limits: slow the motion down only at the times at which a limit requires this.");
   retime_command
-      .add_option("--margin", options.margin,
-                  "With --local: largest distance from the edge of the support that the ZMP must "
-                  "keep [m]. A smaller value allows a faster motion. Default: an eighth "
-                  "of the width of the sole, or 80 % of the distance that the result has without "
-                  "--local, whichever is larger.")
+      .add_option(
+          "--margin", options.margin,
+          "With --local: upper limit of the distance that the ZMP has to keep from the edge "
+          "of the support [m]. Without --margin, this distance is an eighth of the width of "
+          "the sole, or 80 % of the distance that the result has without --local, whichever "
+          "is larger. A smaller value allows a faster motion.")
       ->check(number_within(0.0, 1.0))
       ->type_name("M");
   retime_command.add_flag("--keep-pauses", options.keep_pauses,

@@ -67,7 +67,7 @@ void add_report(Command& app, Context& context) {
       ->type_name("FILE");
   command
       ->add_option("--push", options->push,
-                   "Results file of ayumi push (default: push.json in the RUN, if it exists).")
+                   "Results file of ayumi push (default: push.json in RUN, if it exists).")
       ->type_name("FILE");
   command->add_option("--robot", options->robot,
                       "Robot to use in place of the one that the run names.");

@@ -294,8 +294,8 @@ void bind_local_pace(py::module_& m) {
       py::arg("margin") = py::none(), py::arg("keep_pauses") = false,
       py::arg("progress") = py::none(),
       "The fastest timing along the motion: the motion slows down only where a limit "
-      "binds. The result names its table `table`; `margin` is the largest distance [m] from the "
-      "edge of the support that the ZMP must keep; "
+      "binds. The result names its table `table`; `margin` is an upper limit [m] of the distance "
+      "that the ZMP has to keep from the edge of the support; "
       "with `keep_pauses`, spans in which nothing moves keep their length.");
 }
 

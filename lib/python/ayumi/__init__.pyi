@@ -1029,7 +1029,7 @@ def data_folder(name: str) -> Path:
     """Folder of the bundled data: 'robots', 'patterns' or 'examples'."""
 
 def fastest_local_pace(task: Task, *, table: str = 'retimed.csv', margin: Optional[float] = None, keep_pauses: bool = False, progress: Optional[Callable[[str, float, str], Any]] = None) -> LocalPace:
-    """The fastest timing along the motion: the motion slows down only where a limit binds. The result names its table `table`; `margin` is the largest distance [m] from the edge of the support that the ZMP must keep; with `keep_pauses`, spans in which nothing moves keep their length."""
+    """The fastest timing along the motion: the motion slows down only where a limit binds. The result names its table `table`; `margin` is an upper limit [m] of the distance that the ZMP has to keep from the edge of the support; with `keep_pauses`, spans in which nothing moves keep their length."""
 
 def fastest_pace(task: Task, *, resolution: float = 0.002, progress: Optional[Callable[[str, float, str], Any]] = None) -> Pace:
     """The fastest uniform time scaling of the pattern that passes the check."""
