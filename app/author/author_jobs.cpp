@@ -77,7 +77,7 @@ AuthorResult check_job(const AuthorMotion& motion, const Progress& progress) {
   lines.push_back(counted_findings(judgement) + ", actuators " + task.profile);
   lines.push_back("Share of the limits: " + shares_of_limits(judgement.report, task.robot));
   for (const Mistake& mistake : mistakes)
-    if (!mistake.is_cause) lines.push_back("The search: " + mistake.words);
+    if (!mistake.is_cause) lines.push_back("Note: " + mistake.words);
   return {result_json("check", judgement.good() ? "The pattern is consistent." : judgement.reason(),
                       judgement.good(), lines),
           {}};
@@ -96,7 +96,7 @@ AuthorResult repair_job(const AuthorMotion& motion, const std::string& text,
   const bool repaired = result.status == RepairStatus::repaired;
   OrderedJson lines =
       json_lines_of(motion_words(task.robot, result.moved, result.before, result.check));
-  for (const std::string& reason : result.reasons) lines.push_back("Because " + reason);
+  for (const std::string& reason : result.reasons) lines.push_back("Reason: " + reason);
   AuthorResult out = {
       result_json("repair",
                   repaired ? "The pattern can be repaired. The ghost shows the repaired motion."

@@ -229,8 +229,11 @@ std::string in_words(const std::vector<BindingLimit>& limits) {
   for (const BindingLimit& limit : limits) {
     const std::string percent = text::fixed(100 * limit.share, 0);
     if (percent == "0") continue;
-    out += (out.empty() ? "" : ", ") + (limit.limit.empty() ? "none" : limit.limit) + " " +
-           percent + " %";
+    const std::string name = limit.limit.empty()      ? "no limit"
+                             : limit.limit == "pace"  ? "largest pace"
+                             : limit.limit == "pause" ? "kept pause"
+                                                      : limit.limit;
+    out += (out.empty() ? "" : ", ") + name + " " + percent + " %";
   }
   return out;
 }

@@ -120,11 +120,11 @@ SidecarGains gains_for(const RobotModel& model) {
         "with the default gains, an error of the standing robot grows by the factor e in " +
         text::brief(-1 / study.weakest.analysis.decay, 2) + " s (" +
         study.loops[study.weakest.index].name +
-        "), because the servos are soft. Of the gains that were tried, these are the nearest to "
-        "the default gains with which the error " +
+        "), because the servos are soft. Among the gains that were tried, these are the nearest to "
+        "the default gains that let the error " +
         (decay > 0
-             ? "decays (time constant of the slowest mode: " + text::brief(1 / decay, 2) + " s)"
-             : std::string("grows by less than the factor e during a step"));
+             ? "decay (time constant of the slowest mode: " + text::brief(1 / decay, 2) + " s)"
+             : std::string("grow by less than the factor e during a step"));
     result.check = "with `ayumi gains`, after the constants of the servos are known";
     result.to_do =
         "Check the stiffness of the servos: they are so soft that the default gains of the control "

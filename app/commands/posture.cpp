@@ -185,17 +185,22 @@ void save(const Context& context, const PostureCommand& options, const RobotMode
   require_file_target(options.out);
   const std::string text = library_text(context, options, model, robot, angles);
   write_file(options.out, text);
-  std::vector<std::string> beyond;
+  std::vector<std::string> beyond, words;
   for (const auto& [joint, angle] : angles) {
     const Dof& dof = model.dofs()[model.find_dof(joint)];
-    if (dof.limited && (angle < dof.lower - 1e-9 || angle > dof.upper + 1e-9))
+    if (dof.limited && (angle < dof.lower - 1e-9 || angle > dof.upper + 1e-9)) {
+      const double unit = dof.prismatic ? 1e-3 : std::numbers::pi / 180;
       beyond.push_back(joint);
+      words.push_back(joint + " (" + text::brief(angle / unit) + (dof.prismatic ? " mm" : " deg") +
+                      ", limits " + text::brief(dof.lower / unit) + " to " +
+                      text::brief(dof.upper / unit) + ")");
+    }
   }
   context.print(options.out + ": posture '" + options.as + "': " + angles_text(&model, angles) +
                 "\n" +
                 (beyond.empty() ? ""
                                 : "  the angles of these joints are beyond their limits: " +
-                                      text::join(beyond, ", ") + "\n"));
+                                      text::join(words, ", ") + "\n"));
   context.print_json(Json{
       {"output", options.out},
       {"posture", options.as},

@@ -252,7 +252,7 @@ const std::array<Job, 8> kJobs = {{
     {"laws", "other control laws, with a push and noise", laws_text,
      "592865eecec64627668740ec2199c017950eb95a6eb9751675dc7137b5129d19"},
     {"check", "findings and likely causes of patterns with mistakes", check_text,
-     "c1b790b2d92057dbe5c06ad461de0637e570cd5e35f276a6511120e45cc4be62"},
+     "feb1ab66e3b52735b231566c7a93d902437a5f3d7df5b1c1fbb3df04ccd2e002"},
     {"repair", "a repaired walk", repair_text,
      "16a496a391adf500cd5316e5b640ab9626fce3f2cea47a77d8aa2ad8a57cf4d8"},
     {"push", "limits of pushes", push_text,

@@ -708,7 +708,7 @@ CaseRanges read_case_ranges(const std::string& text, long count) {
   CaseRanges ranges;
   const auto refuse = [&] {
     fail(ErrorCode::usage, "--cases: '" + text::printable(text.substr(0, 60)) +
-                               "' is no list of cases; write numbers from 0 to " +
+                               "' is not a list of cases; write numbers from 0 to " +
                                std::to_string(count - 1) + " in rising order, such as 0-99,120");
   };
   const char* at = text.data();

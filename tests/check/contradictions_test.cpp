@@ -143,7 +143,7 @@ TEST(Contradictions, MissingKeysOfTheZmpAreNamed) {
         });
       },
       "/phases/2: the robot stands on the left foot from 4.8 s to 5.28 s, but no keyframe puts the "
-      "ZMP there");
+      "ZMP under this foot; ");
 }
 
 // Two steps to the side, with a key of the ZMP at each end of a swing.
@@ -265,7 +265,7 @@ TEST(Contradictions, AFootAboveTheGroundIsDoubted) {
   std::vector<Mistake> doubts = doubtful_values(small(), pattern);
   ASSERT_EQ(doubts.size(), 1u);
   EXPECT_EQ(doubts.front().text(),
-            "/phases/3: the right foot's z is 0.009 m, but the ground is at 0 m there");
+            "/phases/3: the right foot's z is 0.009 m, but the ground there is at z = 0 m");
   pattern.world.blocks = {{.low = {-0.1, -0.1}, .high = {0.1, -0.01}, .height = 0.009}};
   doubts = doubtful_values(small(), pattern);
   EXPECT_TRUE(doubts.empty()) << doubts.front().text();
@@ -281,7 +281,7 @@ TEST(Contradictions, AKickThatEndsAboveTheGroundIsNamed) {
   expect_named(
       small(), kick, [&](Pattern& p) { p.keyframes[last].feet[1]->position.z() = 0.012; },
       "/keyframes/" + std::to_string(last) +
-          ": the right foot's z is 0.012 m, but the ground is at 0 m there");
+          ": the right foot's z is 0.012 m, but the ground there is at z = 0 m");
 }
 
 TEST(Contradictions, AKickThatStaysInTheAirIsNamed) {
@@ -293,8 +293,10 @@ TEST(Contradictions, AKickThatStaysInTheAirIsNamed) {
     if (kick.keyframes[i].feet[1]) last = i;
   expect_named(
       small(), kick, [&](Pattern& p) { p.keyframes[last].feet[1].reset(); },
-      "/keyframes/[0-9]+: this is the right foot's last key before it carries the robot at .* with "
-      "one more key at .* s that puts the foot back to its old place, the pattern is consistent");
+      "/keyframes/[0-9]+: the right foot carries the robot from .* s on, but its last key before "
+      "this time puts the foot at z = .* m, and the ground there is at z = 0 m; with one more key "
+      "at .* "
+      "s that puts the foot back to its old place, the pattern is consistent");
 }
 
 TEST(Contradictions, FootholdsWithXAndYExchangedAreNamed) {
@@ -354,9 +356,9 @@ TEST(Contradictions, ATimeSinceTheKeyframeBeforeIsNamed) {
   };
   expect_named(
       tall(), bends(1.2), [&](Pattern& p) { p = bends(0.12); },
-      "/keyframes/1/keyframes/2: the keyframe is 0.12 s after the one before it; with 1.2 s after "
-      "it, the "
-      "pattern is consistent");
+      "/keyframes/1/keyframes/2: the keyframe comes 0.12 s after the keyframe before it; with 1.2 "
+      "s "
+      "between these two keyframes, the pattern is consistent");
 }
 
 // The times make the written motion a thousand times as long as the one that is meant. A file may

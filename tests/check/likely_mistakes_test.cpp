@@ -53,6 +53,13 @@ size_t nth_swing(const Pattern& pattern, int n) {
 
 }  // namespace
 
+TEST(LikelyMistakes, AHeightThatIsTooLowIsComparedWithTheLowestOne) {
+  for (const double height : {-0.2, 0.02})
+    expect_called(mistakes_after([&](Pattern& p) { p.keyframes[1].cog_height = height; }),
+                  "/keyframes/1",
+                  " above the soles in the home posture, and should be at least 0.07");
+}
+
 // Changes that a search tried in vain are no cause, and are not listed before known causes.
 TEST(LikelyMistakes, ASearchWithoutACauseComesLast) {
   Pattern pattern = sound_walk();

@@ -198,7 +198,8 @@ std::vector<Mistaken> make_list() {
         for (Keyframe& key : p.keyframes)
           if (key.torso) *key.torso /= kDegree;
       });
-  add("a squat too deep", small(), squat, "/keyframes/2: the COG height is 0.115 m.*down to 0.1",
+  add("a squat too deep", small(), squat,
+      "/keyframes/2: the COG height is 0.115 m.*of at least 0.1",
       [](Pattern& p) { p.keyframes[2].cog_height = 0.115; });
   add("a sway in mm", tall(), sway, "/keyframes/2: the COG's y is .*read in mm",
       [](Pattern& p) { *p.keyframes[2].cog_y *= 1000; });
@@ -553,8 +554,9 @@ TEST(PlantedMistakes, ACogThatSinksBelowItsStoopIsNamed) {
   ASSERT_FALSE(found.empty());
   EXPECT_TRUE(std::regex_search(
       found.front().text(),
-      std::regex("^/keyframes/1: t is 1.2 s, so the segment from here to the lift-off lasts 0.3 s; "
-                 "for a flight .* speed of 0.74 m/s there, so it sinks .* mm below the height of "
+      std::regex("^/keyframes/1: t is 1.2 s, so the segment from here to the lift-off lasts 0.3 s. "
+                 "The flight .* COG speed of 0.74 m/s at its beginning, and so the COG sinks .* mm "
+                 "below the height of "
                  "this key; with t = ")))
       << found.front().text();
 }
@@ -624,7 +626,8 @@ void shorten_flight(Pattern& pattern, const std::smatch& says) {
 const std::regex& flight_words() {
   static const std::regex words(
       "/phases/1: the flight lasts 0.1[56] s, in which the robot rises by [0-9]+ mm; with a flight "
-      "of ([0-9.]+) s, and all that follows ([0-9.]+) s earlier, the pattern is consistent");
+      "of ([0-9.]+) s, and everything after the flight ([0-9.]+) s earlier, the pattern is "
+      "consistent");
   return words;
 }
 
@@ -744,7 +747,8 @@ TEST(PlantedMistakes, AChangeThatCannotBeSampledIsNotNamed) {
   std::smatch flight, height;
   ASSERT_TRUE(std::regex_search(
       found, flight,
-      std::regex("/phases/1: .*with a flight of ([0-9.]+) s, and all that follows ([0-9.]+) s ")))
+      std::regex("/phases/1: .*with a flight of ([0-9.]+) s, and everything after the flight "
+                 "([0-9.]+) s ")))
       << found;
   ASSERT_TRUE(std::regex_search(
       found, height,
@@ -845,11 +849,11 @@ TEST(PlantedMistakes, ASwingWithManyKeysIsNamedInFewWords) {
   }
   const std::string says = found.front().says.instead;
   EXPECT_TRUE(
-      says.starts_with("with all keys of this swing nearer and higher, the right foot at ["))
+      says.starts_with("with all keys of this swing nearer and higher (the right foot at ["))
       << says;
   EXPECT_TRUE(
       says.ends_with("] in /keyframes/5, and in the later keys of this swing at 85 % of "
-                     "the distance from the line between its places on the ground"))
+                     "the distance from the line between the places of the foot on the ground),"))
       << says;
 }
 
@@ -870,8 +874,9 @@ TEST(PlantedMistakes, WhatIsNamedForTwoKeysWasTriedForBoth) {
   std::smatch value;
   if (!std::regex_search(
           found, value,
-          std::regex("with values (?:up|down) to (-?[0-9.]+) deg here and in /keyframes/3, the "
-                     "pattern is consistent")))
+          std::regex(
+              "with values (?:up to|of at least) (-?[0-9.]+) deg here and in /keyframes/3, the "
+              "pattern is consistent")))
     return;
   for (const size_t key : {2, 3})
     pattern.keyframes[key].joints["l_shoulder_pitch"] = std::stod(value[1]) * kDegree;

@@ -161,7 +161,7 @@ TEST_F(PostureCommand, BadInputIsRefusedAndNothingIsWritten) {
           3, "/dev/null");
   const Output wide = adjust("l_elbow=-300", "wide");
   EXPECT_EQ(wide.exit_code, 0);
-  EXPECT_NE(wide.out.find("beyond their limits: l_elbow"), std::string::npos) << wide.out;
+  EXPECT_NE(wide.out.find("beyond their limits: l_elbow ("), std::string::npos) << wide.out;
 }
 
 TEST_F(PostureCommand, DrawsAPicture) {

@@ -577,7 +577,7 @@ TEST(SweepOnSlurm, AbsentOrRefusing) {
   expect(slurm.s.sweep({"-o", "r.db", "--partition", "p"}), 2,
          "--partition works only together with --engine slurm");
   expect(slurm.s.sweep({"-o", "r.db", "--engine", "pbs"}), 2, "pbs");
-  expect(slurm.s.sweep({"-o", "r.db", "--cases", "5-2"}), 2, "'5-2' is no list of cases");
+  expect(slurm.s.sweep({"-o", "r.db", "--cases", "5-2"}), 2, "'5-2' is not a list of cases");
   expect(slurm.s.sweep({"-o", "r.db", "--cases", "24"}), 2, "numbers from 0 to 23");
   ASSERT_EQ(slurm.s.sweep({"-o", "c.db", "--cases", "2,5-7"}).exit_code, 0);
   EXPECT_EQ(Json::parse(slurm.s.run({"sweep", "status", "c.db", "--json"}).out).at("done"), 4);

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <functional>
+#include <string>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
@@ -98,9 +100,9 @@ TEST(BrokenRobot, WhatIsNoUrdf) {
   EXPECT_EQ(urdf_error(" \n"), "r.urdf: the file is empty, but a URDF is needed");
   // A file that was cut off: the message has the line of its end and a remedy.
   const std::string cut = urdf_error("<robot name=\"r\">\n<link name=\"a\">\n<mass>1.");
-  EXPECT_TRUE(cut.starts_with("r.urdf:3: not XML")) << cut;
+  EXPECT_TRUE(cut.starts_with("r.urdf:3: this is not valid XML")) << cut;
   EXPECT_NE(cut.find("copy the file again if it was cut off"), std::string::npos) << cut;
-  EXPECT_TRUE(urdf_error("hello").starts_with("r.urdf: not XML"));
+  EXPECT_TRUE(urdf_error("hello").starts_with("r.urdf: this is not XML"));
   EXPECT_TRUE(urdf_error("<robot name=\"r\">\n<link name=\"a\">\n</robot>").starts_with("r.urdf"));
   EXPECT_EQ(
       urdf_error("<sdf/>"),
@@ -222,6 +224,16 @@ TEST(BrokenRobot, WrongMeshes) {
   folder.write("trunk.obj", "");
   EXPECT_EQ(message_of(folder, "r.urdf", {.meshes = true}),
             "r.urdf: link trunk: mesh trunk.obj: the mesh file is empty");
+  const char* const reader = std::getenv("AYUMI_MESH_READER");
+  const std::string before = reader ? reader : "";
+  setenv("AYUMI_MESH_READER", "no/reader", 1);
+  const std::string unread = message_of(folder, "r.urdf", {.meshes = true});
+  reader ? setenv("AYUMI_MESH_READER", before.c_str(), 1) : unsetenv("AYUMI_MESH_READER");
+  EXPECT_TRUE(
+      unread.starts_with("r.urdf: link trunk: mesh trunk.obj cannot be read: the program "
+                         "ayumi-mesh-reader, which reads meshes, was not found; Ayumi "
+                         "looked for no/reader; "))
+      << unread;
   EXPECT_EQ(urdf_error(urdf(link(
                 "trunk", std::string(kInertia) + "<visual><geometry><cone/></geometry></visual>"))),
             "r.urdf:3: link trunk: unknown geometry <cone>; known: box, sphere, cylinder, mesh");

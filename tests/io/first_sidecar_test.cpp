@@ -364,7 +364,7 @@ TEST(FirstSidecar, TheTrunkCarriesBothLegs) {
   std::string said;
   for (const std::string& item : plain.to_do) said += item + "\n";
   EXPECT_NE(said.find("left l_foot, 130 mm long and 70 mm wide, reaching 80 mm ahead of the ankle "
-                      "and 50 mm behind it, right r_foot"),
+                      "and 50 mm behind it; right r_foot"),
             std::string::npos)
       << said;
   EXPECT_NE(said.find("Left: hip yaw l_hip_yaw, hip roll l_hip_roll, hip pitch l_hip_pitch, knee "

@@ -134,8 +134,9 @@ TEST(ForeignTable, AnAssumedUnitIsSaid) {
   EXPECT_EQ(units_of(table("t,l_elbow,r_knee", ',', '.', 1, 0.001)),
             "units: radians (assumed; --unit deg changes this)");
   EXPECT_EQ(units_of(table("t,l_elbow,r_knee", ',', '.', 1, 0.05)),
-            "units: radians (assumed). With radians, 2 joints (r_knee, l_elbow) exceed position or "
-            "speed limits; with degrees, none does. If they are in degrees, use --unit deg");
+            "units: radians (assumed). In radians, 2 joints (r_knee, l_elbow) exceed position or "
+            "speed limits; in degrees, none of them does. If the angles are in degrees, give "
+            "--unit deg");
   EXPECT_EQ(units_of(table("t,l_elbow,r_knee", ',', '.', 1, 0.05), {.degrees = true}),
             "units: degrees, as --unit says");
   EXPECT_EQ(units_of(table("t,l_elbow[deg],r_knee[rad]", ',', '.', 1, 0.001)), "");
@@ -143,8 +144,9 @@ TEST(ForeignTable, AnAssumedUnitIsSaid) {
   EXPECT_EQ(units_of(table("t,l_elbow[deg],r_knee", ',', '.', 1, 0.001)),
             "units: radians for r_knee (assumed; --unit deg changes this)");
   EXPECT_EQ(units_of(table("t,l_elbow[deg],r_knee", ',', '.', 1, 0.05)),
-            "units: radians for r_knee (assumed). With radians, 1 joint (r_knee) exceeds position "
-            "or speed limits; with degrees, it does not. If they are in degrees, use --unit deg");
+            "units: radians for r_knee (assumed). In radians, 1 joint (r_knee) exceeds position "
+            "or speed limits; in degrees, it does not. If the angles are in degrees, give "
+            "--unit deg");
   EXPECT_EQ(units_of(table("t,l_elbow[deg],r_knee", ',', '.', 1, 0.05), {.degrees = true}),
             "units: degrees for r_knee, as --unit says");
 }

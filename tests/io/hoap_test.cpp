@@ -118,6 +118,11 @@ TEST(Hoap, NeedsEncodersAndWholeMilliseconds) {
   description.encoders["c"].device = 1;
   const std::string error = test::error_message([&] { hoap_csv(RobotModel(description), sway()); });
   EXPECT_NE(error.find("has encoder device 1; the layout"), std::string::npos) << error;
+  description.encoders.clear();
+  const std::string bare = test::error_message(
+      [&] { parse_hoap("1,2,0,0,0,R,R,R\n", "s.csv", RobotModel(description)); });
+  EXPECT_NE(bare.find("this robot has no encoders; name the robot of the file"), std::string::npos)
+      << bare;
   ReferenceTrajectory table = sway();
   table.dt = 0.0015;
   EXPECT_THROW(hoap_csv(test::bus_robot(), table), Error);

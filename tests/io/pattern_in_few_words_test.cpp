@@ -70,8 +70,7 @@ TEST(PatternInFewWords, ExpressionsKnowFunctions) {
   EXPECT_NE(fails("sin(1, 2)").find("sin takes one number"), std::string::npos);
   EXPECT_NE(fails("atan2(1)").find("atan2 takes two numbers"), std::string::npos);
   EXPECT_NE(fails("sin 1 + pi").find("'(' is missing after sin"), std::string::npos);
-  EXPECT_NE(fails("sinn(1)").find("unknown name 'sinn'; did you mean 'sin'"), std::string::npos)
-      << fails("sinn(1)");
+  EXPECT_NE(fails("sinn(1)").find("; did you mean 'sin'?"), std::string::npos) << fails("sinn(1)");
   EXPECT_NE(fails("2*stride + pi").find("write a parameter as ${stride}"), std::string::npos);
 }
 

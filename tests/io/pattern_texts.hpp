@@ -142,7 +142,7 @@ inline const std::vector<Broken>& mistakes() {
        "of \"t\""},
       {"keyframes", R"([{"t": 2, "zmp": "center"}, {"t": 2300, "zmp": "center"},
                         {"t": 2.6, "zmp": "center"}])",
-       "if /keyframes/1 should be at 2.3 s and not at 2300 s, correct that time"},
+       "if the time of /keyframes/1 should be 2.3 s and not 2300 s, correct that time"},
       {"phases", R"([{"until": 1, "support": "left",
                       "swing": {"foot": "right", "to": [0, 0], "lift": 15}}])",
        "/phases/0/swing/lift: 15 is too large; the largest allowed value is 10 m. Lengths are in "

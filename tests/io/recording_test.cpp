@@ -110,6 +110,9 @@ TEST(Recording, ATableWithGapsOrOtherUnitsGetsOneLine) {
   EXPECT_EQ(recording_error("t,r_knee\n0,0.1\n0.001,0.1\n0.002,0.1\n0.010,0.1\n0.011,0.1\n"),
             "m.csv: after t = 0.002 s (data row 3) 7 samples are missing: 8 ms pass before the "
             "next row, but usually 1 ms; record again");
+  EXPECT_EQ(recording_error("t,r_knee\n0,0.1\n0.001,0.1\n0.002,0.1\n0.004,0.1\n0.005,0.1\n"),
+            "m.csv: after t = 0.002 s (data row 3) 1 sample is missing: 2 ms pass before the next "
+            "row, but usually 1 ms; record again");
   EXPECT_EQ(
       recording_error("t,r_knee\n0,0.1\n0,0.2\n0.002,0.1\n0.003,0.1\n0.004,0.1\n"),
       "m.csv: after t = 0 s (data row 1) the time does not increase; correct the time column");

@@ -804,7 +804,7 @@ TEST(ChoreonoidBody, WrongBodiesAreRefusedInOneLine) {
   has(error("format: ChoreonoidBody\nformat_version: 9\nlinks:\n - {name: a}\n"), "version 9");
   has(error(head + "  - { name: a, mass: nan }\n"), "r.body:4: 'nan' is not a finite number");
   has(error(head + "  - { name: a, mass: '1,5' }\n"), "'1,5' is not a finite number");
-  has(error(head + "  - { name: a, mass: 1\n"), "not YAML");
+  has(error(head + "  - { name: a, mass: 1\n"), "this is not valid YAML");
   has(error("format: ChoreonoidBody\n"), "no list of links");
   has(error("- a\n"), "must be a map");
   has(error("format: Robot\nlinks:\n - {name: a}\n"), "must have format: ChoreonoidBody");

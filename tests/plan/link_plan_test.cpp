@@ -346,8 +346,8 @@ TEST(LinkPlan, APostureThatReachesAPlaceIsNamed) {
     const std::string message =
         test::error_message([&] { sample(model, pattern, {.dt = 0.01}); }, ErrorCode::bad_pattern);
     const std::string words =
-        "the left hand does not get to this place from the posture before it;"
-        " it is there with ";
+        "the left hand cannot reach this place from the posture before this time;"
+        " these angles reach the place: ";
     const size_t found = message.find(words), time = message.find("t = ");
     ASSERT_NE(found, std::string::npos) << message;
     Keyframe& key = at(pattern, std::stod(message.substr(time + 4)));

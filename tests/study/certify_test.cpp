@@ -191,13 +191,12 @@ TEST(UncertainTask, RefusesPushesThatHaveNoEffectAndValuesInAWrongUnit) {
   const auto of_push = [](const std::string& part) {
     return R"("pushes": [{"unit": "N s", "direction": 0, "duration": 0.02, )" + part + "}]";
   };
-  EXPECT_EQ(
-      error_message([&] {
-        StandingTask t(of_push(R"("size": 1, "time": 0.1, "on":
+  EXPECT_EQ(error_message([&] {
+              StandingTask t(of_push(R"("size": 1, "time": 0.1, "on":
       {"choice": ["cog", "trunk", "l_fot"], "source": "t"})"));
-      }),
-      "study.json: /uncertainty/pushes/0/on: hoap1 has no link 'l_fot'; did you mean 'l_foot'?; "
-      "a push acts on a link, on \"trunk\" or on \"cog\"");
+            }),
+            "study.json: /uncertainty/pushes/0/on: hoap1 has no link 'l_fot'; a push acts on a "
+            "link, on \"trunk\" or on \"cog\"; did you mean 'l_foot'?");
   const auto message = [](const std::string& members) {
     const StandingTask t(members);
     return error_message([&] { t.task.check(values_of(t.task, 0), "case 0"); });

@@ -8,6 +8,7 @@
 #include "ayumi/author/edit/edit.hpp"
 #include "ayumi/author/generate/generate.hpp"
 #include "ayumi/plan/sample.hpp"
+#include "tests/support/error_message.hpp"
 #include "tests/support/faults.hpp"
 #include "tests/support/hoap1.hpp"
 
@@ -61,6 +62,17 @@ TEST(Retime, FindsAPaceBetweenTooQuickAndTooWarm) {
   EXPECT_FALSE(passes(walk, pace.scale / 1.004));
   EXPECT_FALSE(passes(walk, 3.1)) << "no window left to find";
   EXPECT_LT(pace.evaluations, 90);
+}
+
+// A pattern with goals of VIIP has no motion of its own, so its pace cannot be changed.
+TEST(Retime, APatternWithGoalsIsRefused) {
+  Pattern steps = walk_pattern(hoap1(), walk_defaults(hoap1()));
+  steps.phases.assign(3, Phase{});
+  for (size_t i = 0; i < 3; ++i) steps.phases[i].until = 1.0 + 3.0 * static_cast<double>(i);
+  steps.phases[1].viip = CogGoal{};
+  const std::string message =
+      error_message([&] { fastest_pace(hoap1(), steps, {.dt = kTick}); }, ErrorCode::bad_pattern);
+  EXPECT_NE(message.find("so the pattern cannot be retimed"), std::string::npos) << message;
 }
 
 // No pace mends a wrong posture; for a table, this is reported at once.

@@ -144,7 +144,7 @@ class Fit {
 
   std::string lengths() const {
     return "the phases of a round of " + phases_.place + " last " + in_seconds(phases_.period) +
-           ", and the keyframes of " + keys_.place + " repeat every " + in_seconds(keys_.period);
+           ", but the keyframes of " + keys_.place + " repeat every " + in_seconds(keys_.period);
   }
 
   // -1 if one wrong digit explains the difference; otherwise the relative difference.
@@ -186,8 +186,8 @@ class Fit {
       if (meant < kShortest) continue;
       add(
           pattern_.keyframes[key].pointer,
-          "the keyframe is " + in_seconds(lasts) + " after the one before it; " + lengths(),
-          "with " + in_seconds(meant) + " after it",
+          "the keyframe comes " + in_seconds(lasts) + " after the keyframe before it; " + lengths(),
+          "with " + in_seconds(meant) + " between these two keyframes",
           [block = keys_, j, by = meant - lasts](Pattern& p) {
             double later = 0;
             for (size_t i = block.first; i < p.keyframes.size(); ++i) {

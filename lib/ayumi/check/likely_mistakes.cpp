@@ -250,9 +250,11 @@ class Suspicions {
     std::vector<Mistake> found;
     const auto look = [&](const std::string& place, double height) {
       if (height <= most && height >= kLowestCog * home) return;
-      std::string words =
-          "the COG height is " + metres(height) + ", but the COG of " + model_.name() + " is " +
-          metres(home) + " above the soles in the home posture, and can be at most " + metres(most);
+      std::string words = "the COG height is " + metres(height) + ", but the COG of " +
+                          model_.name() + " is " + metres(home) +
+                          " above the soles in the home posture, and " +
+                          (height > most ? "can be at most " + metres(most)
+                                         : "should be at least " + metres(kLowestCog * home));
       for (const auto& [unit, factor] : {std::pair("mm", 1e-3), std::pair("cm", 1e-2)})
         if (height * factor <= most && height * factor >= kLowestCog * home)
           words += "; heights are in metres, and " + text::brief(height) + " " + unit + " are " +
@@ -487,11 +489,11 @@ std::vector<Mistake> likely_mistakes(const RobotModel& model, const Pattern& pat
           why.place == e.place && why.words.starts_with(e.written + ","))
         mistakes.front().words = why.words + "; " + e.instead;
   if (search.complete) return mistakes;
-  const std::string changes = std::to_string(search.trials) +
-                              " trial changes of the pattern, after which the search stopped";
+  const std::string stopped =
+      "the search stopped after " + std::to_string(search.trials) + " trial changes of the pattern";
   if (mistakes.empty())
-    return {{.place = "", .words = "no likely cause was found by " + changes, .is_cause = false}};
-  mistakes.back().words += "; there may be another cause that was not found by " + changes;
+    return {{.place = "", .words = "no likely cause was found, and " + stopped, .is_cause = false}};
+  mistakes.back().words += "; there may be another cause, because " + stopped;
   return mistakes;
 }
 

@@ -453,12 +453,12 @@ class Hypotheses::Maker {
              end != ends_.end() && *end < after; ++end)
           if (!has_key_of_contact(*end))
             add(Rank::slip, *end,
-                ", but no phase ends there; the phase that ends at " + seconds(*end) +
-                    " has no key of the ZMP or of a foot",
+                ", but no phase ends at this time; a phase ends at " + seconds(*end) +
+                    ", but no keyframe moves the ZMP or a foot at that time",
                 kCoincidence);
       if (i == 0 || (!too_early && belongs_to_phase(keys[i]))) continue;
       const std::string lasts = ", so the segment before it lasts " + seconds(in) +
-                                " and the one after it " + seconds(out);
+                                " and the segment after it lasts " + seconds(out);
       // The key is moved into the longer one of its two neighbouring segments, and also into the
       // shorter one.
       for (const double share : {0.35, 0.6, 0.8}) {
@@ -487,17 +487,17 @@ class Hypotheses::Maker {
       const double lasts = keys[i].t - keys[i - 1].t;
       for (const double meant : number_slips(lasts)) {
         if (meant < kShortestPhase || meant > longest) continue;
-        made.push_back(
-            {Rank::slip,
-             {key_place(i), "the keyframe is " + seconds(lasts) + " after the one before it",
-              "with " + seconds(meant) + " after it"},
-             [pointer = keys[i].pointer, by = meant - lasts](Pattern& p) {
-               double later = 0;
-               for (Keyframe& key : p.keyframes) {
-                 if (key.pointer == pointer) later += by;
-                 key.t += later;
-               }
-             }});
+        made.push_back({Rank::slip,
+                        {key_place(i),
+                         "the keyframe comes " + seconds(lasts) + " after the keyframe before it",
+                         "with " + seconds(meant) + " between these two keyframes"},
+                        [pointer = keys[i].pointer, by = meant - lasts](Pattern& p) {
+                          double later = 0;
+                          for (Keyframe& key : p.keyframes) {
+                            if (key.pointer == pointer) later += by;
+                            key.t += later;
+                          }
+                        }});
       }
     }
   }
@@ -579,8 +579,9 @@ class Hypotheses::Maker {
              {key_place(k),
               "t is " + seconds(low.t) + ", so the segment " +
                   (before ? "from here to the lift-off" : "from the landing to here") + " lasts " +
-                  seconds(lasts) + "; for a flight of this length, the COG has a speed of " +
-                  text::brief(speed, 2) + " m/s there, so it sinks " + text::fixed(1000 * sink, 0) +
+                  seconds(lasts) + ". The flight is so long that it needs a COG speed of " +
+                  text::brief(speed, 2) + " m/s at its " + (before ? "beginning" : "end") +
+                  ", and so the COG sinks " + text::fixed(1000 * sink, 0) +
                   " mm below the height of this key",
               "with t = " + seconds(t)},
              [k = k, t](Pattern& p) { p.keyframes[k].t = t; },
@@ -663,14 +664,15 @@ class Hypotheses::Maker {
           !(is_of_contact(key) || (flight && key.cog_height)))
         continue;
       if (tried && std::abs(key.t - begin - *tried) < kSameInstant) continue;
-      made.push_back({Rank::slip,
-                      {phase_place(phase),
-                       "the phase ends at " + seconds(until) +
-                           ", where no keyframe moves the ZMP or a foot; " + key_place(k) +
-                           " does so at " + seconds(key.t) + ", where no phase ends",
-                       "with an end at " + seconds(key.t)},
-                      [phase, t = key.t](Pattern& p) { p.phases[phase].until = t; },
-                      kCoincidence});
+      made.push_back(
+          {Rank::slip,
+           {phase_place(phase),
+            "the phase ends at " + seconds(until) +
+                ", but no keyframe moves the ZMP or a foot at this time; " + key_place(k) +
+                " is at " + seconds(key.t) + ", but no phase ends at that time",
+            "with an end at " + seconds(key.t)},
+           [phase, t = key.t](Pattern& p) { p.phases[phase].until = t; },
+           kCoincidence});
     }
   }
 
@@ -689,7 +691,7 @@ class Hypotheses::Maker {
       made.push_back({Rank::slip,
                       {phase_place(phase),
                        "the phase lasts " + seconds(lasts) +
-                           ", and keyframes do not fit the ends of the phases",
+                           ", so the times of keyframes do not fit the ends of the phases",
                        "with a duration of " + seconds(meant) + " (then " +
                            text::counted(static_cast<size_t>(more), "more keyframe") +
                            (more == 1 ? " is" : " are") + " at the end of a phase)"},
@@ -844,8 +846,8 @@ class Hypotheses::Maker {
     made.push_back({Rank::exchange,
                     {phase_place(phase),
                      "the robot stands on the " + foot + " foot from " + seconds(begin) + " to " +
-                         seconds(until) + ", but no keyframe puts the ZMP there; " +
-                         key_place(wrong) + " puts it " + zmp_words(wrong),
+                         seconds(until) + ", but no keyframe puts the ZMP under this foot; " +
+                         key_place(wrong) + " puts the ZMP " + zmp_words(wrong),
                      "with \"zmp\": \"" + foot + "\" in keyframes at these two times"},
                     [begin, until, place = place_under(support)](Pattern& p) {
                       for (const double t : {begin, until}) {
@@ -1290,7 +1292,7 @@ class Hypotheses::Maker {
               std::string("the ") + name_of(swing.foot) + " foot turns by " + angle(turn) +
                   " against the " + name_of(other(swing.foot)) + " foot",
               "with a yaw of " + angle(swing.to.rpy.z() + less) +
-                  (has_later_place(i) ? ", and all later footholds turned about it by " +
+                  (has_later_place(i) ? ", and all later footholds turned about this one by " +
                                             angle(less) + " (the turn then takes more steps),"
                                       : "")},
              [i, less](Pattern& p) {
@@ -1400,13 +1402,13 @@ class Hypotheses::Maker {
     if (keys.size() > kPlacedKeys)
       texts.push_back("and in the later keys of this swing at " + text::fixed(100 * share, 0) +
                       " % of the " + (away == 1 ? "vertical " : (up == 1 ? "level " : "")) +
-                      "distance from the line between its places on the ground");
+                      "distance from the line between the places of the foot on the ground");
     const auto s = static_cast<size_t>(index(side));
     return {Rank::amount,
             {key_place(keys.front().key), words.written,
              "with all keys of this swing " +
                  (away == 1 ? words.lower : (up == 1 ? "nearer" : "nearer and " + words.lower)) +
-                 ", the " + name_of(side) + " foot at " + text::join(texts, ", ")},
+                 " (the " + name_of(side) + " foot at " + text::join(texts, ", ") + "),"},
             [places, s](Pattern& p) {
               for (const auto& [key, place] : places) p.keyframes[key].feet[s]->position = place;
             },
@@ -1942,12 +1944,12 @@ class Hypotheses::Maker {
            {key_place(off ? k : keys[*first + 1]),
             "the COG height is " + text::brief(std::max(leaves, lands)) + " m at the " +
                 (off ? "lift-off" : "landing") + ", where the knees are bent by only about " +
-                text::fixed(bend, 0) + " deg; the straighter a leg is, the quicker its knee turns",
+                text::fixed(bend, 0) + " deg; the knee of an almost straight leg turns very fast",
             "with " + text::brief(leaves - by) + " m at the lift-off and " +
                 text::brief(lands - by) + " m at the landing" +
-                (lower.size() > 2
-                     ? ", and as much lower at the ends of the other flights with straight legs,"
-                     : "")},
+                (lower.size() > 2 ? ", and with a COG height that is lower by the same amount "
+                                    "at the ends of the other flights with straight legs,"
+                                  : "")},
            [lower, by](Pattern& p) {
              for (const size_t key : lower) *p.keyframes[key].cog_height -= by;
            }});
@@ -1998,11 +2000,12 @@ class Hypotheses::Maker {
                           !is_repeated(pattern_, pattern_.phases.back().pointer);
       add(
           k,
-          "the ZMP moves to its last place until " + seconds(until) + ", and the motion ends at " +
+          "the ZMP reaches its last place at " + seconds(until) + ", and the motion ends at " +
               seconds(end) + ", so the COG has too little time to come to rest above the ZMP",
           [longer](const std::string& more) {
             return longer ? "with a last phase that is " + more + " longer"
-                          : "with one more phase at the end, of " + more + " with support \"both\"";
+                          : "with one more phase with support \"both\" at the end, which lasts " +
+                                more + ",";
           },
           [longer](Pattern& p, double more) {
             Phase both;
@@ -2055,19 +2058,20 @@ class Hypotheses::Maker {
       }
       if (flights.empty() || shorter <= 0) return;
       const bool one = flights.size() == 1;
-      made.push_back({Rank::pace,
-                      {phase_place(first),
-                       (one ? "the flight lasts " : "the first flight lasts ") + seconds(lasts) +
-                           ", in which the robot rises by " +
-                           text::fixed(1e3 * kGravity * lasts * lasts / 8, 0) + " mm",
-                       one ? "with a flight of " + seconds(shorter) + ", and all that follows " +
-                                 seconds(lasts - shorter) + " earlier"
-                           : "with " + text::brief(share) +
-                                 " times the length of every flight, and all that follows earlier"},
-                      [this, flights](Pattern& p) {
-                        for (auto flight = flights.rbegin(); flight != flights.rend(); ++flight)
-                          p = stretched(model_, p, flight->begin, flight->end, flight->factor);
-                      }});
+      made.push_back(
+          {Rank::pace,
+           {phase_place(first),
+            (one ? "the flight lasts " : "the first flight lasts ") + seconds(lasts) +
+                ", in which the robot rises by " +
+                text::fixed(1e3 * kGravity * lasts * lasts / 8, 0) + " mm",
+            one ? "with a flight of " + seconds(shorter) + ", and everything after the flight " +
+                      seconds(lasts - shorter) + " earlier"
+                : "with " + text::brief(share) +
+                      " times the length of every flight, and everything after a flight earlier"},
+           [this, flights](Pattern& p) {
+             for (auto flight = flights.rbegin(); flight != flights.rend(); ++flight)
+               p = stretched(model_, p, flight->begin, flight->end, flight->factor);
+           }});
     }
   }
 

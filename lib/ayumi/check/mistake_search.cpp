@@ -282,7 +282,7 @@ class Search {
     const WrittenNumber& number = value.numbers.front();
     const double limit = number.neutral + possible * (number.value - number.neutral);
     const std::string up_to =
-        (number.value > number.neutral ? "up to " : "down to ") + value.text(pattern_, limit);
+        (number.value > number.neutral ? "up to " : "of at least ") + value.text(pattern_, limit);
     const std::string written = value.words + " is " + value.text(pattern_, number.value);
     // A change this small is only named if it is enough: then the author need not change more.
     const bool tiny = std::abs(number.value - limit) < kLeastMistake * value.unit(model_);

@@ -54,7 +54,7 @@ class RaisedFeet {
   }
   std::string words(Side side, double t) const {
     return std::string("the ") + name_of(side) + " foot's z is " + text::brief(height(side, t)) +
-           " m, but the ground is at " + text::brief(ground(side, t)) + " m there";
+           " m, but the ground there is at z = " + text::brief(ground(side, t)) + " m";
   }
 
   // Reports the foot if it is not on the ground at t; `written` is the number that states its
@@ -110,15 +110,16 @@ class RaisedFeet {
         if (!last || pattern_.keyframes[*last].t >= t - kRoundedTime) continue;
         Foothold old = *pattern_.keyframes[*last].feet[s];
         old.position = feet_.pose(side, feet_.begin(static_cast<int>(i) - 1)).translation();
-        found_.push_back({pointer_of_keyframe(pattern_, *last),
-                          std::string("this is the ") + name_of(side) +
-                              " foot's last key before it carries the robot at " + text::brief(t) +
-                              " s, and leaves it at z = " + text::brief(height(side, t)) +
-                              " m; the ground there is at " + text::brief(ground(side, t)) + " m",
-                          "with one more key at " + text::brief(t) +
-                              " s that puts the foot back to its old place",
-                          [t, s, old](Pattern& p) { add_key(p, t, s, old); },
-                          feet_.begin(static_cast<int>(i) - 1)});
+        found_.push_back(
+            {pointer_of_keyframe(pattern_, *last),
+             std::string("the ") + name_of(side) + " foot carries the robot from " +
+                 text::brief(t) + " s on, but its last key before this time puts the foot " +
+                 "at z = " + text::brief(height(side, t)) +
+                 " m, and the ground there is at z = " + text::brief(ground(side, t)) + " m",
+             "with one more key at " + text::brief(t) +
+                 " s that puts the foot back to its old place",
+             [t, s, old](Pattern& p) { add_key(p, t, s, old); },
+             feet_.begin(static_cast<int>(i) - 1)});
       }
   }
 

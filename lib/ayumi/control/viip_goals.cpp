@@ -146,7 +146,9 @@ std::string obstacle(const RobotModel& model, const CommandSample& held, const V
   const Vector3d goal = held.cog + rpy_to_matrix({0, 0, yaw}) * displacement;
   const double height = held.cog.z() - ground_of(held.feet), margin = params.margin * height;
   if (!(height + displacement.z() > kLowestShare * height))
-    return "the COG would be at " + text::fixed(1e3 * (height + displacement.z()), 1) +
+    return "the COG would be " + text::fixed(1e3 * std::abs(height + displacement.z()), 1) +
+           " mm " + (height + displacement.z() < 0 ? "below" : "above") +
+           " the ground, but it must be at least " + text::fixed(1e3 * kLowestShare * height, 1) +
            " mm above the ground";
   const double inside = support_polygon(model, held.feet, Support::both).margin(goal.head<2>());
   if (inside < margin)

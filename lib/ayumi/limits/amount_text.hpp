@@ -50,9 +50,9 @@ inline std::string kind_place_and_time(const Finding& finding) {
   return kind_and_place(finding.kind, finding.where) + " at " + text::fixed(finding.at, 3) + " s";
 }
 
-/// The kind, the place, the time and the hint of a finding.
+/// The kind, the place, the time, the value, the limit and the hint of a finding.
 inline std::string finding_with_hint(const Finding& finding) {
-  return kind_place_and_time(finding) + ": " + finding.hint;
+  return kind_place_and_time(finding) + ": " + amount_text(finding) + "; " + finding.hint;
 }
 
 }  // namespace ayumi

@@ -167,7 +167,7 @@ Advice table_position_advice(const JudgedMotion& motion, const FindingWindow& wi
   const Violation& v = window.worst;
   const Dof& dof = motion.model.dofs()[v.item];
   const double beyond = std::abs(v.value - v.limit);
-  const std::string amount = v.detail == kInCounts ? text::brief(beyond) + " counts"
+  const std::string amount = v.detail == kInCounts ? text::fixed(beyond, 0) + " counts"
                              : dof.prismatic       ? text::brief(1e3 * beyond, 3) + " mm"
                                                    : angle_size(beyond, motion.degrees, 3);
   return {refused_text(motion, v) + " is " + amount + " beyond its range: move " + dof.name +

@@ -93,7 +93,8 @@ Advice torque_advice(const JudgedMotion& motion, const FindingWindow& window) {
   return "lower the load on " + motion.model.dofs()[v.item].name +
          ": if the inertia is the cause, " +
          slow_down_text(std::sqrt(std::abs(v.value / v.limit))) +
-         "; if the weight is the cause, shorten its lever, for example by straightening the leg";
+         "; if the weight is the cause, shorten the lever of the weight, for example by "
+         "straightening the leg";
 }
 
 std::string torque_infeasibility(const Finding& f, double violation) {

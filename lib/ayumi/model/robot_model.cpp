@@ -361,9 +361,9 @@ const ActuatorLimits& RobotModel::limits(const std::string& profile) const {
   if (profile.empty()) return limits_.front();
   for (const ActuatorLimits& limits : limits_)
     if (limits.name == profile) return limits;
-  complain_sidecar(
-      description_, "/profiles",
-      "no actuator profile '" + profile + "'; known: " + text::join(profile_names(), ", "));
+  fail(ErrorCode::bad_model, "the robot '" + name() + "' has no actuator profile '" + profile +
+                                 "'; known: " + text::join(profile_names(), ", ") +
+                                 text::suggestion(profile, profile_names()));
 }
 
 std::vector<std::string> RobotModel::profile_names() const {

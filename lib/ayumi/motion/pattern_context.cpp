@@ -70,8 +70,8 @@ std::map<std::string, double> posture_joints(const RobotModel& model, const Patt
   for (const auto& entry : pattern.postures) known.push_back(entry.first);
   for (const auto& entry : model.description().postures) known.push_back(entry.first);
   fail_unknown_name(place, "neither the pattern nor the robot '" + model.name() +
-                               "' has a posture '" + name + "'" + text::suggestion(name, known) +
-                               "; known: " + text::join(known, ", "));
+                               "' has a posture '" + name + "'; known: " + text::join(known, ", ") +
+                               text::suggestion(name, known));
 }
 
 Eigen::VectorXd default_posture(const RobotModel& model, const Pattern& pattern) {

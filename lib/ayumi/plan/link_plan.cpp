@@ -186,8 +186,8 @@ void LinkPlan::add_target(const std::string& name, bool gaze, const std::vector<
     if (link < 0) {
       std::vector<std::string> known = {"left", "right"};
       for (const Link& each : model.links()) known.push_back(each.name);
-      complain("the robot '" + model.name() + "' has no link '" + name + "'" +
-                   text::suggestion(name, known) + "; give left, right or the name of a link",
+      complain("the robot '" + model.name() + "' has no link '" + name +
+                   "'; give left, right or the name of a link" + text::suggestion(name, known),
                true);
     }
     target.name = "link " + name;
@@ -710,9 +710,9 @@ void LinkPlan::complain(const Group& group, double t, const std::vector<Aim>& ai
           joint.name + " " +
           (joint.prismatic ? text::fixed(state.theta[dof], 4) + " m" : degrees(state.theta[dof])));
     }
-    what = "the " + target.name + " does not get to this place from the posture before it";
-    remedy = "it is there with " + text::join(angles, ", ") +
-             "; give these joints keys with these angles at this time";
+    what = "the " + target.name + " cannot reach this place from the posture before this time";
+    remedy = "these angles reach the place: " + text::join(angles, ", ") +
+             "; give the joints keys with these angles at this time";
   } else if (target.gaze) {
     what = "the gaze misses its point by " + degrees(angle);
     remedy = "give a point nearer to straight ahead, or turn the torso";

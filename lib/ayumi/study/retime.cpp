@@ -9,6 +9,7 @@
 #include "ayumi/limits/amount_text.hpp"
 #include "ayumi/limits/limit.hpp"
 #include "ayumi/plan/sample.hpp"
+#include "ayumi/plan/viip_phases.hpp"
 
 namespace ayumi {
 
@@ -168,6 +169,7 @@ class PaceSearch {
 
 FastestPace fastest_pace(const RobotModel& model, const Pattern& pattern,
                          const RetimeOptions& options, const Progress& progress) {
+  refuse_viip_phases(pattern, "retimed");
   return PaceSearch(model, pattern, options, progress).run();
 }
 

@@ -119,9 +119,9 @@ UncertainTask::UncertainTask(const RobotModel& model, const CommandSeries& serie
       if (link == "cog" || link == "trunk" || model.find_link(link) >= 0) continue;
       std::vector<std::string> names = {"cog", "trunk"};
       for (const Link& each : model.links()) names.push_back(each.name);
-      refuse(push.link.place, model.name() + " has no link '" + link + "'" +
-                                  text::suggestion(link, names) +
-                                  "; a push acts on a link, on \"trunk\" or on \"cog\"");
+      refuse(push.link.place, model.name() + " has no link '" + link +
+                                  "'; a push acts on a link, on \"trunk\" or on \"cog\"" +
+                                  text::suggestion(link, names));
     }
     if (push.bounds && !series.viip.empty())
       refuse(push.size.place,

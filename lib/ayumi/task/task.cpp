@@ -25,9 +25,9 @@ void refuse_unknown_places(const Pattern& pattern, const RobotModel& robot) {
     const SourcePlace place = {pattern.file, "/scenario/" + std::to_string(i)};
     const auto refuse_link = [&](const std::string& name) {
       if (std::find(links.begin(), links.end(), name) == links.end())
-        fail_unknown_name(place + "/on", robot.name() + " has no link '" + name + "'" +
-                                             text::suggestion(name, links) +
-                                             "; 'cog' pushes through the centre of gravity");
+        fail_unknown_name(place + "/on", robot.name() + " has no link '" + name +
+                                             "'; 'cog' pushes through the centre of gravity" +
+                                             text::suggestion(name, links));
     };
     const auto refuse_joint = [&](const std::string& name) {
       if (!name.empty() && std::find(joints.begin(), joints.end(), name) == joints.end())
@@ -41,6 +41,18 @@ void refuse_unknown_places(const Pattern& pattern, const RobotModel& robot) {
         },
         d.what);
   }
+}
+
+// The pattern names the profile, so the place of the error is in the pattern.
+void refuse_unknown_profile(const Pattern& pattern, const RobotModel& robot) {
+  const std::vector<std::string> names = robot.profile_names();
+  if (pattern.profile.empty() ||
+      std::find(names.begin(), names.end(), pattern.profile) != names.end())
+    return;
+  fail_unknown_name({pattern.file, "/profile"},
+                    "the robot '" + robot.name() + "' has no actuator profile '" + pattern.profile +
+                        "'; known: " + text::join(names, ", ") +
+                        text::suggestion(pattern.profile, names));
 }
 
 // A wrong name in a call is wrong use of the library; in a file, it is bad input.
@@ -76,6 +88,7 @@ Task make_task(Pattern pattern, RobotModel robot, const std::string& profile,
                const Progress& progress, int threads) {
   refuse_unknown_places(pattern, robot);
   refuse_unknown_gains(pattern, robot);
+  if (profile.empty()) refuse_unknown_profile(pattern, robot);
   const std::string name = robot.limits(profile.empty() ? pattern.profile : profile).name;
   const double tick = robot.description().servo_period;
   CommandSeries series = [&] {

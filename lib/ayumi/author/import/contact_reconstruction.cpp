@@ -91,10 +91,12 @@ class Grounding {
       }
     }
     std::vector<std::string> result;
-    if (floats > kSaid || sinks > kSaid)
+    std::vector<std::string> ways;
+    if (floats > kSaid) ways.push_back("up to " + millimetres(floats) + " above the ground");
+    if (sinks > kSaid) ways.push_back("up to " + millimetres(sinks) + " below the ground");
+    if (!ways.empty())
       result.push_back(
-          "supporting soles are up to " + millimetres(floats) + " above the ground and up to " +
-          millimetres(sinks) + " below the ground" +
+          "supporting soles are " + text::join(ways, " and ") +
           " (--ground moves the robot up and down, so that the supporting soles touch the ground)");
     if (slides > kSaid) result.push_back("supporting soles slide by up to " + millimetres(slides));
     constexpr size_t kMost = 6;  // names in a line. Chosen: a person can still read the line

@@ -132,10 +132,17 @@ class Reader {
         result_.layout = layout;
         return;
       }
+    if (std::all_of(layouts_.begin(), layouts_.end(),
+                    [](const SequenceLayout& layout) { return layout.motors == 0; }))
+      stop(
+          "the rows are counts of motors, but this robot has no encoders; name the robot of the "
+          "file, or add \"encoders\" to the sidecar of this robot",
+          true);
     stop("the row has " + std::to_string(columns) + " columns, but " +
          (with_interval ? "sequences" : "rows without an interval") + " of this robot have " +
          list_of(layouts_, with_interval) +
-         "; see \"layouts\" in the sidecar. If this file is of another robot, name that robot");
+         "; add the layout of this file to \"layouts\" in the sidecar, or name the robot of the "
+         "file");
   }
 
   void read_targets(const std::vector<std::string_view>& cells, std::string_view line) {
@@ -297,9 +304,9 @@ SequenceLayout written_layout(const RobotModel& model, const std::string& name) 
     return layout;
   }
   if (!name.empty() && !names.empty())
-    fail(ErrorCode::bad_model, "robot '" + model.name() + "' has no layout '" + name + "'" +
-                                   text::suggestion(name, names) + "; it has " +
-                                   text::join(names, ", "));
+    fail(ErrorCode::bad_model, "robot '" + model.name() + "' has no layout '" + name +
+                                   "'; it has " + text::join(names, ", ") +
+                                   text::suggestion(name, names));
   fail(ErrorCode::bad_model, "robot '" + model.name() +
                                  "' has no layout with an interval, so no sequence can be written "
                                  "for this robot; add such a layout to \"layouts\" in the sidecar");

@@ -125,7 +125,7 @@ std::string recognize_hoap_motion(const MotionInput& source) {
       std::string_view(source.bytes).substr(first, source.bytes.find('\n', first) - first);
   if (line.find_first_of(",;\t") == std::string_view::npos) return "";
   return looks_like_hoap(plain_table_text(source.bytes, source.file), source.model)
-             ? "the first row looks like a row of a sequence of this robot"
+             ? "the first row looks like a row of a HOAP sequence"
              : "";
 }
 

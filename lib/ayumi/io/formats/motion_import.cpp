@@ -141,9 +141,7 @@ std::string remedy(const MotionFormat* format, const ImportedMotion& motion,
     words += "; if the commas are decimal commas, write decimal points";
   if (!format) return words;
   words += " (read as " + format->words;
-  if (!motion.reason.empty())
-    words +=
-        ", because " + motion.reason + "; import reads " + text::join(read_format_names(), ", ");
+  if (!motion.reason.empty()) words += ", because " + motion.reason;
   return words + ")";
 }
 
@@ -512,8 +510,9 @@ Rows even_rows(const MotionFile& motion, const Rows& rows, const ImportOptions& 
   if (last > static_cast<double>(kMostRows))
     fail(
         ErrorCode::bad_file, {file},
-        "the motion lasts " + text::brief(times.back()) + " s, which is more than " +
-            std::to_string(kMostRows) + " rows at this rate; cut the file" +
+        "the motion lasts " + text::brief(times.back()) + " s and needs one row every " +
+            text::brief(1000 * dt) + " ms, but import reads at most " + std::to_string(kMostRows) +
+            " rows; cut the file" +
             (format == "csv" ? ". If the times are in milliseconds, name their column t[ms]" : ""));
   const Eigen::Index count =
       spacing.even && !keys ? rows.rows() : static_cast<Eigen::Index>(std::floor(last + 1e-3)) + 1;
@@ -725,10 +724,10 @@ std::string hint_of_degrees(const RobotModel& model, const RawMotion& motion,
   if (suspicious.empty()) return "";
   constexpr size_t kNamed = 3;  // largest number of names. Chosen: a line that a person still reads
   const bool one = suspicious.size() == 1;
-  return ". With radians, " + text::counted(suspicious.size(), "joint") + " (" +
+  return ". In radians, " + text::counted(suspicious.size(), "joint") + " (" +
          text::join_first(suspicious, kNamed) + ") " + (one ? "exceeds" : "exceed") +
-         " position or speed limits; with degrees, " + (one ? "it does not" : "none does") +
-         ". If they are in degrees, use --unit deg";
+         " position or speed limits; in degrees, " + (one ? "it does not" : "none of them does") +
+         ". If the angles are in degrees, give --unit deg";
 }
 
 // What is assumed about the unit of the angles for which the file states none; empty if it states

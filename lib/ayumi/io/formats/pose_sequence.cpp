@@ -226,7 +226,7 @@ class PoseSequenceReader {
                        text::counted(names_.size(), "joint") + " (numbered from 0)");
     for (const std::string& name : names_)
       if (find_joint(model_, name) < 0)
-        refuse(root, "'" + name + "' is no joint of '" + model_.name() + "'" +
+        refuse(root, "'" + name + "' is not a joint of '" + model_.name() + "'" +
                          text::suggestion(name, own));
     if (given.empty() && most >= 0)
       notes_.push_back("the numbers are the joints in the order of the robot, as --order says: " +

@@ -16,6 +16,7 @@ const std::map<std::string, KnownFormat>& known_formats() {
       {"ayumi.pattern/1", {"a pattern", "ayumi check FILE"}},
       {"ayumi.postures/1", {"a library of postures", "ayumi posture list FILE"}},
       {"ayumi.robot/1", {"a robot", "ayumi inspect FILE"}},
+      {"ayumi.study/1", {"a study", "ayumi certify PATTERN --study FILE"}},
       {"ayumi.run/1", {"the list of a run's files", "ayumi report FOLDER"}},
       {"ayumi.push/1", {"the result of a push study", "ayumi report FOLDER --push FILE"}}};
   return known;

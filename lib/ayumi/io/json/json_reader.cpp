@@ -259,7 +259,7 @@ int JsonNode::integer() const {
 
 std::uint64_t JsonNode::unsigned_integer() const {
   if (!value_->is_number_unsigned())
-    complain("expected a whole number >= 0, found " + kind_of(*value_));
+    complain("expected a whole number of at least 0, found " + kind_of(*value_));
   return value_->get<std::uint64_t>();
 }
 

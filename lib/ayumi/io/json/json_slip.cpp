@@ -491,7 +491,9 @@ class SlipFinder {
 
   void take_end() {
     if (at_top()) {
-      if (inside().expects == Expects::value) say(at_, "the text holds no value");
+      if (inside().expects == Expects::value)
+        say(at_,
+            "the text ends before its first value; it must hold an object, as in { \"t\": 0.5 }");
       return;
     }
     if (doubtful_ && open_.size() == 2)

@@ -165,8 +165,8 @@ class Parser {
   static std::string unknown_function(const std::string& name) {
     std::vector<std::string> names = {"pi"};
     for (const auto& entry : functions()) names.push_back(entry.first);
-    return "unknown name '" + name + "'" + text::suggestion(name, names) +
-           "; write a parameter as ${" + name + "}; the known names are " + text::join(names, ", ");
+    return "unknown name '" + name + "'; write a parameter as ${" + name +
+           "}; the known names are " + text::join(names, ", ") + text::suggestion(name, names);
   }
 
   std::string unknown(const std::string& name) const {

@@ -45,9 +45,9 @@ void read_parameters(const JsonNode& root, const std::map<std::string, double>& 
     if (!scope.parameters.contains(name))
       fail(ErrorCode::usage, {root.file()},
            "parameter '" + name + "' is not declared in the pattern" +
-               text::suggestion(name, names) +
                (names.empty() ? "; the pattern declares no parameters"
-                              : "; declared: " + text::join(names, ", ")));
+                              : "; declared: " + text::join(names, ", ")) +
+               text::suggestion(name, names));
     if (!(std::abs(value) <= kLargestNumber))
       fail(ErrorCode::usage, place,
            text::exact(value) + " is out of range; numbers must be from -1e6 to 1e6");
@@ -207,11 +207,12 @@ std::string meant_time(double before, double previous, const std::string& place_
   const bool gross = previous > kGrossTime * t;
   for (const double slip : number_slips(previous))
     if (slip > before && slip < t && (gross || slip > previous / kGrossTime))
-      return "; if " + place_of_previous + " should be at " + text::exact(slip) + " s and not at " +
-             text::exact(previous) + " s, correct that time; otherwise give a later time here";
+      return "; if the time of " + place_of_previous + " should be " + text::brief(slip, 10) +
+             " s and not " + text::exact(previous) +
+             " s, correct that time; otherwise give a later time here";
   for (const double slip : number_slips(t))
     if (slip > previous && slip < 2 * previous - before)
-      return "; give a later time, perhaps " + text::exact(slip) + " s";
+      return "; give a later time, perhaps " + text::brief(slip, 10) + " s";
   return "; give a later time" + otherwise;
 }
 

@@ -80,10 +80,10 @@ void require_setting(const JsonNode& node, const std::string& name) {
   known.insert(known.end(), kWholeNumbers.begin(), kWholeNumbers.end());
   known.insert(known.end(), kSwitches.begin(), kSwitches.end());
   if (contains(known, name)) return;
-  node.complain("there is no setting '" + name + "'" + text::suggestion(name, known) +
-                "; settings are " + text::join(known, ", ") +
+  node.complain("there is no setting '" + name + "'; settings are " + text::join(known, ", ") +
                 ", set.NAME (a parameter of the pattern), gain.NAME and value.NAME (of worlds and "
-                "disturbances)");
+                "disturbances)" +
+                text::suggestion(name, known));
 }
 
 double whole(const JsonNode& node, double least, double value) {

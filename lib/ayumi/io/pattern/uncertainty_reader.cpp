@@ -36,7 +36,8 @@ void read_weights(const JsonNode& node, size_t count, PatternScope& scope, Distr
   d.weights = numbers(*weights, false, scope);
   if (d.weights.size() != count)
     weights->complain("there are " + std::to_string(count) + " values but " +
-                      std::to_string(d.weights.size()) + " weights");
+                      std::to_string(d.weights.size()) +
+                      " weights; give one weight for each value");
   double sum = 0;
   for (const double weight : d.weights) {
     if (weight < 0) weights->complain("a weight must not be negative");
@@ -122,8 +123,8 @@ void read_factor(const JsonNode& node, const std::vector<UncertainFactor>& facto
   for (const UncertainFactor& each : factors) names.push_back(each.name);
   q.factor = factor->string();
   if (std::find(names.begin(), names.end(), q.factor) == names.end())
-    factor->complain("there is no factor '" + q.factor + "'" + text::suggestion(q.factor, names) +
-                     "; declare it in \"factors\"");
+    factor->complain("there is no factor '" + q.factor + "'; declare it in \"factors\"" +
+                     text::suggestion(q.factor, names));
 }
 
 UncertainQuantity read_quantity(const JsonNode& node, const std::vector<UncertainFactor>& factors,
@@ -273,9 +274,7 @@ Study study_of_text(const std::string& text, const std::filesystem::path& path) 
   const Json document = parse_json(text, path.string(), ErrorCode::bad_pattern);
   const JsonNode root = root_of(document, path.string(), ErrorCode::bad_pattern);
   root.expect_object();
-  const std::string format = root.at("format").string();
-  if (format != "ayumi.study/1")
-    root.at("format").complain("expected \"ayumi.study/1\", found \"" + format + "\"");
+  require_format(root, "ayumi.study/1");
   only_pattern_keys(root, "study");
   Study study;
   study.file = path.string();

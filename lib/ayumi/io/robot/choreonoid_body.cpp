@@ -46,7 +46,7 @@ class BodyReader {
       root = YAML::Load(bytes);
     } catch (const YAML::Exception& error) {
       fail(ErrorCode::bad_file, {path_.string(), "", error.mark.line + 1},
-           "not YAML (" + error.msg + ")");
+           "this is not valid YAML (" + error.msg + "); correct this place");
     }
     if (!root.IsMap())
       complain(root, "a Choreonoid body must be a map with format: ChoreonoidBody");

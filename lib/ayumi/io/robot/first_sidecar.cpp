@@ -535,7 +535,7 @@ std::vector<std::string> to_do_list(const RobotModel& model, const RobotGuess& g
   } else {
     items.push_back(
         "Compare the outline of the soles with the real feet: " + sole_in_words(model, Side::left) +
-        ", " + sole_in_words(model, Side::right) + ".");
+        "; " + sole_in_words(model, Side::right) + ".");
     if (!guess.rounded_soles.empty()) items.push_back(guess.rounded_soles);
     if (!guess.more_feet.empty()) items.push_back(guess.more_feet);
     const InverseKinematics ik(model, model.posture());

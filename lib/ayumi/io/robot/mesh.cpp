@@ -278,7 +278,7 @@ class MeshReader {
       companion_bytes_ += bytes.size();
       return bytes;
     } catch (const Error& error) {
-      complain(std::string("the mesh file needs ") + error.what());
+      complain(std::string("a file that the mesh names cannot be read: ") + error.what());
     }
   }
 

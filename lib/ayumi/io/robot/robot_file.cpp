@@ -86,8 +86,11 @@ void fill_meshes(RobotDescription& robot, bool visuals, const Progress& progress
   if (failure.error) try {
       std::rethrow_exception(failure.error);
     } catch (const Error& error) {
+      const std::string mesh = requests[failure.request].path.string();
+      // Where the mesh reader itself fails, the error does not name the mesh.
+      const bool names_mesh = error.place().file == mesh;
       fail(error.code(), {robot.urdf_file, "link " + first_link[failure.request]},
-           std::string("mesh ") + error.what());
+           "mesh " + (names_mesh ? std::string() : mesh + " cannot be read: ") + error.what());
     }
   for (const auto& [shape, request] : wanted) shape->mesh = meshes[request];
 }

@@ -181,7 +181,8 @@ RobotDescription parse_urdf(const std::string& bytes, const fs::path& path,
   }
   if (!source)
     fail(ErrorCode::bad_file, {path.string()},
-         "not a usable URDF: " + (complaint.empty() ? "the reader gave no reason" : complaint));
+         "the URDF cannot be read: " +
+             (complaint.empty() ? "the reader gave no reason" : complaint));
   RobotDescription robot;
   robot.name = source->getName();
   robot.urdf_file = path.string();

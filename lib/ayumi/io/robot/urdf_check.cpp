@@ -186,7 +186,7 @@ class Checker {
                             "continuous joint");
     for (const char* end : {"parent", "child"}) {
       const auto* node = element->FirstChildElement(end);
-      if (!node) complain(element, owner + "has no <" + end + " link=\"...\"/>");
+      if (!node) complain(element, owner + "<" + end + " link=\"...\"/> is missing; add it");
       (std::strcmp(end, "parent") == 0 ? joint.parent : joint.child) =
           required(node, "link", owner);
     }
@@ -219,7 +219,7 @@ class Checker {
     if (kind->ValueStr() == "mesh") needs("filename");
     for (const char* extent : {"radius", "length"})
       if (double value = 1; kind->QueryDoubleAttribute(extent, &value) == TIXML_SUCCESS)
-        if (!(value > 0)) complain(kind, owner + std::string(extent) + " must be above 0");
+        if (!(value > 0)) complain(kind, owner + "the " + extent + " must be above 0");
   }
 
   // urdfdom requires effort and velocity. From here on, 0 means that the file does not state the

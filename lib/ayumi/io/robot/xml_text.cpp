@@ -77,17 +77,18 @@ void parse_xml(TiXmlDocument& document, const std::string& bytes, const std::str
   document.Parse(bytes.c_str(), nullptr, TIXML_ENCODING_UTF8);
   if (document.Error() && !document.RootElement())
     fail(ErrorCode::bad_file, {file},
-         std::string("not XML (") + document.ErrorDesc() + "); " + kind + " is needed");
+         std::string("this is not XML (") + document.ErrorDesc() + "); " + kind + " is needed");
   if (document.Error()) {
     // The parser does not know the row if the text ends within an element.
     const auto rows = 1 + std::count(bytes.begin(), bytes.end(), '\n');
     const int row = document.ErrorRow() > 0 ? document.ErrorRow() : static_cast<int>(rows);
     fail(ErrorCode::bad_file, {file, "", row},
-         std::string("not XML (") + document.ErrorDesc() +
+         std::string("this is not valid XML (") + document.ErrorDesc() +
              "); correct this place, or copy the file again if it was cut off");
   }
   if (!document.RootElement())
-    fail(ErrorCode::bad_file, {file}, "not XML (no element in it); " + kind + " is needed");
+    fail(ErrorCode::bad_file, {file},
+         "this is not XML, because it has no element; " + kind + " is needed");
 }
 
 void complain_xml(const std::string& file, const TiXmlElement* at, const std::string& message) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string_view>
 
+#include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/degrees.hpp"
@@ -312,9 +313,10 @@ double interval_of(const NumberTable& table, const RecordingOptions& options,
     const std::string at = "after t = " + text::exact(t[static_cast<Index>(k)]) + " s (data row " +
                            std::to_string(k + 1) + ") ";
     if (!(steps[k] > 0)) complain(file, at + "the time does not increase; correct the time column");
+    const long lost = std::max(1L, std::lround(steps[k] / usual) - 1);
     if (steps[k] > (1 + kGap) * usual)
-      complain(file, at + std::to_string(std::max(1L, std::lround(steps[k] / usual) - 1)) +
-                         " samples are missing: " + text::brief(1000 * steps[k]) +
+      complain(file, at + text::counted(lost, "sample") + (lost == 1 ? " is" : " are") +
+                         " missing: " + text::brief(1000 * steps[k]) +
                          " ms pass before the next row, but usually " + text::brief(1000 * usual) +
                          " ms; record again");
   }
