@@ -259,5 +259,27 @@ TEST(Join, ATableOfKeysAndSwingsOfAFoot) {
   }
 }
 
+// A motion may begin a little beside the end of the one before. In a table, this difference fades,
+// so no joint jumps within one tick.
+TEST(Join, ASmallDifferenceAtTheJoinFades) {
+  const auto elbow = [](double begin, double end) {
+    Pattern pattern = stand_pattern(hoap1(), 1);
+    pattern.keyframes.emplace_back();
+    pattern.keyframes.back().t = 1;
+    pattern.keyframes.front().joints["r_elbow"] = begin;
+    pattern.keyframes.back().joints["r_elbow"] = end;
+    return pattern;
+  };
+  const Pattern first = elbow(-0.5, -0.6), second = elbow(-0.6001, -0.5);
+  const CommandSeries a = sample(hoap1(), first), b = sample(hoap1(), second);
+  const CommandSeries all = sample(hoap1(), joined(hoap1(), {first, a}, {second, b}, 0, "t.csv"));
+  const int elbow_dof = hoap1().find_dof("r_elbow");
+  const size_t join = a.samples.size() - 1;
+  for (size_t k = join - 5; k < join + 20; ++k)
+    EXPECT_LT(std::abs(all.samples[k].acceleration[6 + elbow_dof]), 0.5) << k;
+  EXPECT_NEAR(all.samples[join + 200].state.theta[elbow_dof], b.samples[200].state.theta[elbow_dof],
+              1e-12);
+}
+
 }  // namespace
 }  // namespace ayumi::test

@@ -91,6 +91,21 @@ TEST(KeptText, TheMirrorImageExchangesNamesAndSigns) {
       << result.text;
 }
 
+// Words that name a side stay as they are when a motion is mirrored: those of comments, and the
+// names of the pattern, of parameters and of postures. Values and other words do not count.
+TEST(KeptText, LinesThatNameASideAreFound) {
+  const std::string text = R"({ // the right foot
+  "name": "Left kick", "robot": "hoap1", // bright, upright
+  "parameters": { "left_lift": 0.02 },
+  "postures": { "wave_RIGHT": { "r_elbow": 10 } },
+  /* first
+     l_knee bends */
+  "phases": [ { "until": 1, "support": "left" } ] // knee
+})";
+  EXPECT_EQ(lines_with_sides(text, {"l_knee"}), (std::vector<int>{1, 2, 3, 4, 6}));
+  EXPECT_EQ(lines_with_sides(text, {}), (std::vector<int>{1, 2, 3, 4}));
+}
+
 TEST(KeptText, AnotherPaceMultipliesTimes) {
   const RewrittenPattern result = kept(retimed(hoap1(), read(kAuthored), 1.25), 1.25);
   EXPECT_EQ(result.text,

@@ -247,6 +247,30 @@ TEST_F(Edit, SaysWhatIsLost) {
   EXPECT_EQ(mirrored.out.find("not kept"), std::string::npos) << mirrored.out;
 }
 
+// Comments are not mirrored, so the answer says which of them name a side.
+TEST_F(Edit, SaysWhichWordsAreNotMirrored) {
+  write(folder / "lift.json", R"({ "format": "ayumi.pattern/1", "robot": "hoap1",
+  "name": "a lift of the right arm", "units": { "angle": "rad" },
+  "phases": [{ "until": 2, "support": "both" }],
+  "keyframes": [
+    { "t": 0.5, "joints": { "r_shoulder_roll": 0 } }, // both arms down
+    { "t": 1.5, "joints": { "r_shoulder_roll": -0.3 } } // r_shoulder_roll: out
+  ] })");
+  const Output said = ayumi({"edit", "mirror", "lift.json", "-o", "m.json"});
+  EXPECT_NE(said.out.find("not mirrored: the words that name a side in lines 2, 6 of lift.json"),
+            std::string::npos)
+      << said.out;
+  const auto lines = [&](const std::vector<std::string>& arguments) {
+    return Json::parse(ayumi(arguments).out)["sides_not_mirrored"];
+  };
+  EXPECT_EQ(
+      lines({"edit", "key", "lift.json", "--at", "1.5", "--mirror", "-o", "k.json", "--json"}),
+      Json({6}));
+  EXPECT_EQ(
+      lines({"edit", "key", "lift.json", "--at", "0.5", "--mirror", "-o", "j.json", "--json"}),
+      Json::array());
+}
+
 // The text of a pattern from standard input stays like that of a file.
 TEST_F(Edit, ThePatternFromStandardInputKeepsItsText) {
   ASSERT_EQ(ayumi({"new", "kick", "--robot", "hoap1", "-o", "kick.json"}).exit_code, 0);

@@ -11,6 +11,7 @@
 #include "ayumi/author/edit/edit.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/reach.hpp"
+#include "ayumi/motion/differentiate.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "tests/support/error_message.hpp"
 #include "tests/support/hoap1.hpp"
@@ -445,6 +446,24 @@ TEST(LinkPlan, MirroredTargetsMoveTheMirroredArm) {
                    b = hand_at(model, other.samples[k].state, right).end;
     EXPECT_LT((a - Vector3d(b.x(), -b.y(), b.z())).norm(), 1e-6);
   }
+}
+
+// After a hand was released, its joints follow their keys in each pass that solves the COG for the
+// ZMP: the ZMP of the full model is the commanded one.
+TEST(LinkPlan, TheZmpIsCommandedBesideAHandThatIsReleased) {
+  const RobotModel& model = humanoid30();
+  Pattern pattern = standing(6);
+  at(pattern, 0).posture = "home";
+  at(pattern, 1).hands["left"] = kFree;
+  at(pattern, 2).hands["left"] = place({0.28, 0.25, 0.7});
+  at(pattern, 3).hands["left"] = place({0.3, 0.2, 0.75});
+  at(pattern, 3.5).hands["left"] = kFree;
+  const CommandSeries series = sample(model, pattern);
+  RobotData data(model);
+  double off = 0;
+  for (const CommandSample& now : series.samples)
+    off = std::max(off, (full_model_reaction(model, now, data).zmp - now.zmp).norm());
+  EXPECT_LT(off, 5e-4);
 }
 
 // Keys of the legs move the base, and the hand is held nevertheless.

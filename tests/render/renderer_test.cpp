@@ -223,5 +223,46 @@ TEST(RobotSurface, ARobotWithoutVisualsIsSticksWhereItHasNoShapes) {
   }
 }
 
+// If the meshes of some bodies are missing, these bodies are drawn with something else.
+TEST(RobotSurface, ABodyWithoutVisualsHasItsCollisionShapesOrSticks) {
+  RobotDescription description = test::box_robot().description();
+  for (LinkDescription& link : description.links) {
+    link.collisions.clear();
+    if (&link != &description.links.front()) link.visuals.clear();
+  }
+  LinkDescription& last = description.links.back();
+  last.collisions.push_back({"", Box{{0.1, 0.1, 0.1}}, Eigen::Isometry3d::Identity()});
+  const RobotModel model(description);
+  const std::vector<BodySurface> surface = robot_surface(model);
+  std::vector<bool> has_children(surface.size(), false);
+  for (size_t i = 1; i < surface.size(); ++i) has_children[size_t(model.bodies()[i].parent)] = true;
+  int drawn = 0;
+  for (size_t i = 1; i < surface.size(); ++i) {
+    const bool something = !surface[i].closed.indices.empty() || !surface[i].open.indices.empty();
+    const bool wanted = has_children[i] || model.bodies()[i].name == last.name;
+    EXPECT_EQ(something, wanted) << model.bodies()[i].name;
+    drawn += something;
+  }
+  EXPECT_EQ(count_substitutes(model), drawn);
+  EXPECT_EQ(count_substitutes(test::box_robot()), 0);
+}
+
+// A link may be invisible on purpose. If meshes are missing, it is drawn nevertheless.
+TEST(RobotSurface, ALinkWithoutAVisualIsDrawnIfMeshesAreMissing) {
+  RobotDescription description = test::box_robot().description();
+  LinkDescription cover;
+  cover.name = "cover";
+  cover.collisions.push_back({"", Box{{0.2, 0.2, 0.2}}, Eigen::Isometry3d::Identity()});
+  description.links.push_back(cover);
+  JointDescription fixed;
+  fixed.name = "to_cover";
+  fixed.parent = "trunk";
+  fixed.child = "cover";
+  description.joints.push_back(fixed);
+  EXPECT_EQ(count_substitutes(RobotModel(description)), 0);
+  description.missing_meshes = {"cover.stl of link cover"};
+  EXPECT_EQ(count_substitutes(RobotModel(description)), 1);
+}
+
 }  // namespace
 }  // namespace ayumi

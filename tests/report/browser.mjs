@@ -102,7 +102,10 @@ const seen = (tab) => tab.run(`
   const letters = svgs.flatMap((svg) => [...svg.querySelectorAll("text")].map((text) =>
     Number(text.getAttribute("font-size")) * svg.getBoundingClientRect().width /
       svg.viewBox.baseVal.width));
-  return { stage: box(document.getElementById("stage")), curves: box(svgs[0]), plots: svgs.length,
+  const lines = (e) => { const range = document.createRange(); range.selectNodeContents(e);
+    return range.getBoundingClientRect(); };
+  const sheet = document.querySelector("#snapshots img");
+  return { sheet: sheet ? sheet.getBoundingClientRect().width : 1e9, words: Math.max(...[...document.querySelectorAll("caption")].map((e) => lines(e).right)), stage: box(document.getElementById("stage")), curves: box(svgs[0]), plots: svgs.length,
     letters: Math.min(...letters), wide: document.documentElement.scrollWidth,
     window: { width: innerWidth, height: innerHeight } };`);
 
@@ -118,6 +121,8 @@ async function inWindows(tab) {
     expect(top.plots === 2, name + ": one layout of the curves, of " + top.plots + " plots");
     expect(top.letters >= 10.99, name + ": letters of " + top.letters + " pixels");
     expect(top.wide <= width, name + ": the page is " + top.wide + " wide");
+    expect(top.sheet >= 640, name + ": the snapshots are " + top.sheet + " wide");
+    expect(top.words <= width, name + ": the words above a table end at " + top.words);
     await tab.run("document.querySelectorAll('#loci figure svg').forEach((e) => { " +
       "if (e.getClientRects().length) window.last = e; }); " +
       "scrollTo(0, window.last.getBoundingClientRect().top + scrollY - innerHeight / 2);");

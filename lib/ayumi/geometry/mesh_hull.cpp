@@ -1,6 +1,7 @@
 #include "ayumi/geometry/mesh_hull.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "ayumi/math/elementary.hpp"
@@ -23,6 +24,9 @@ constexpr int kDirections = 90;
 /// Distance from a plane below which points count as being in it, relative to the points' extent.
 /// Chosen: above the rounding of single precision, in which mesh files store vertices.
 constexpr double kCoplanar = 1e-6;
+/// Factor on the square of this distance above which rounding cannot bring a point back into the
+/// plane. Chosen: far above the rounding of doubles.
+constexpr double kSurely = 1.01;
 /// Largest number of corners of a face. Definition: the number that contact_patch() can handle.
 constexpr size_t kFaceCorners = 16;
 
@@ -93,16 +97,22 @@ std::vector<HullFace> hull_faces(const std::vector<Vector3d>& points) {
   double extent = 0;
   for (const Vector3d& p : points) extent = std::max(extent, (p - points[0]).norm());
   const double flat = kCoplanar * extent;
-  // The plane of three points contains a face if no point is on its outer side.
+  // The plane of three points contains a face if no point is on its outer side. The point that was
+  // on the outer side of the previous plane is often on that of the next one too, so it is tried
+  // first, by side of the plane.
+  std::array<size_t, 2> outer = {0, 0};
   std::vector<Vector3d> on;
-  const auto take = [&](const Vector3d& origin, const Vector3d& normal) {
+  const auto take = [&](const Vector3d& origin, const Vector3d& normal, size_t& outer_point) {
     on.clear();
     bool any_below = false;
-    for (const Vector3d& p : points) {
-      const double out = normal.dot(p - origin);
-      if (out > flat) return;  // most planes end here, after a few points
+    for (size_t i = 0; i < points.size(); ++i) {
+      const double out = normal.dot(points[i] - origin);
+      if (out > flat) {
+        outer_point = i;
+        return;
+      }
       any_below |= out < -flat;
-      if (out >= -flat) on.push_back(p);
+      if (out >= -flat) on.push_back(points[i]);
     }
     for (const HullFace& face : faces)
       if ((face.normal - normal).squaredNorm() < 1e-8 &&
@@ -110,13 +120,21 @@ std::vector<HullFace> hull_faces(const std::vector<Vector3d>& points) {
         return;
     if (any_below) faces.push_back({normal, outline(on, normal)});
   };
+  // Whether a distance from a plane, times the length of its normal, is larger than `flat` with
+  // certainty.
+  const auto is_out = [&](double distance, double square) {
+    return distance > 0 && distance * distance > kSurely * flat * flat * square;
+  };
   for (size_t i = 0; i < points.size(); ++i)
     for (size_t j = i + 1; j < points.size(); ++j)
       for (size_t k = j + 1; k < points.size(); ++k) {
         const Vector3d u = points[j] - points[i], v = points[k] - points[i], n = u.cross(v);
-        if (n.norm() <= 1e-4 * u.norm() * v.norm()) continue;
-        take(points[i], n.normalized());
-        take(points[i], -n.normalized());
+        const double square = n.squaredNorm();
+        const bool above = is_out(n.dot(points[outer[0]] - points[i]), square);
+        const bool below = is_out(-n.dot(points[outer[1]] - points[i]), square);
+        if ((above && below) || n.norm() <= 1e-4 * u.norm() * v.norm()) continue;
+        if (!above) take(points[i], n.normalized(), outer[0]);
+        if (!below) take(points[i], -n.normalized(), outer[1]);
       }
   return faces;
 }

@@ -224,6 +224,10 @@ void CogSolver::solve_again(int first, int end) {
       changes.next(guess);
       sample.state.base.position += guess.head<3>();
       sample.state.theta += guess.tail(guess.size() - 3);
+      // The changes of a hand that a target led until now do not go on in joints that keys move.
+      for (int dof = 0; !job.links.empty() && dof < job.model.dof_count(); ++dof)
+        if (!job.ik.solves(dof) && !job.links.leads(dof, grid.t(k)))
+          sample.state.theta[dof] = before[3 + dof];
     }
     solve_posture(job, grid.t(k), plan.turned(grid.t(k), trunk[k]), sample, data);
     changes.add(posture_of(sample) - before);

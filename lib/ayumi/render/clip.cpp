@@ -108,6 +108,11 @@ std::vector<std::string> notes_of(const RobotModel& model, const RobotLook& look
     notes.emplace_back(
         "the robot has no visual meshes: it is drawn with its collision shapes, and with sticks "
         "between joints where a link has no collision shape");
+  else if (const int count = count_substitutes(model); count > 0)
+    notes.push_back(
+        std::to_string(count) + " of the robot's " + std::to_string(model.bodies().size()) +
+        " bodies lack visual shapes: they are drawn with their collision shapes, or with "
+        "sticks between joints");
   if (moved > 0) notes.push_back(words_of(look, drawn, moved));
   return notes;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/render/simplify.hpp"
 
 namespace ayumi {
 namespace {
@@ -38,21 +39,46 @@ void add_shape(BodySurface& body, const PlacedShape& placed, const Eigen::Isomet
   }
 }
 
+bool is_bare(const BodySurface& body) {
+  return body.closed.indices.empty() && body.open.indices.empty() && body.textured.empty();
+}
+
 /// Adds sticks from the frame of each body without a shape to the frames of the bodies that are
 /// attached to it.
 void add_sticks(const RobotModel& model, std::vector<BodySurface>& surface) {
   const auto length = [](const Body& body) { return body.placement.translation().norm(); };
   double longest = 0;
   std::vector<bool> bare;
-  for (const BodySurface& body : surface)
-    bare.push_back(body.closed.indices.empty() && body.open.indices.empty() &&
-                   body.textured.empty());
+  for (const BodySurface& body : surface) bare.push_back(is_bare(body));
   for (const Body& body : model.bodies())
     if (body.parent >= 0) longest = std::max(longest, length(body));
   for (const Body& body : model.bodies())
     if (body.parent >= 0 && bare[size_t(body.parent)] && length(body) > 1e-6)
       add_rod(surface[size_t(body.parent)].open, Eigen::Vector3d::Zero(),
               body.placement.translation(), kStick * longest, PlacedShape().color);
+}
+
+/// The visuals of all bodies.
+std::vector<BodySurface> visual_surface(const RobotModel& model) {
+  std::vector<BodySurface> surface(model.bodies().size());
+  for (const Link& link : model.links())
+    for (const PlacedShape& placed : link.visuals)
+      add_shape(surface[size_t(link.body)], placed, link.pose);
+  return surface;
+}
+
+/// Draws links and bodies that have no visuals: with their collision shapes, or else with sticks. A
+/// body may consist of several links. If the files of all visuals were found, a link without a
+/// visual beside one that has a visual is meant to be invisible.
+void add_substitutes(const RobotModel& model, std::vector<BodySurface>& surface) {
+  const bool missing = !model.description().missing_meshes.empty();
+  std::vector<bool> bare;
+  for (const BodySurface& body : surface) bare.push_back(is_bare(body));
+  for (const Link& link : model.links())
+    if (link.visuals.empty() && (missing || bare[size_t(link.body)]))
+      for (const PlacedShape& placed : link.collisions)
+        add_shape(surface[size_t(link.body)], placed, link.pose);
+  add_sticks(model, surface);
 }
 
 }  // namespace
@@ -63,13 +89,19 @@ bool has_visuals(const RobotModel& model) {
 }
 
 std::vector<BodySurface> robot_surface(const RobotModel& model) {
-  const bool visuals = has_visuals(model);
-  std::vector<BodySurface> surface(model.bodies().size());
-  for (const Link& link : model.links())
-    for (const PlacedShape& placed : visuals ? link.visuals : link.collisions)
-      add_shape(surface[size_t(link.body)], placed, link.pose);
-  if (!visuals) add_sticks(model, surface);
+  std::vector<BodySurface> surface = visual_surface(model);
+  add_substitutes(model, surface);
   return surface;
+}
+
+int count_substitutes(const RobotModel& model) {
+  const std::vector<BodySurface> visuals = visual_surface(model);
+  std::vector<BodySurface> surface = visuals;
+  add_substitutes(model, surface);
+  int count = 0;
+  for (size_t i = 0; i < surface.size(); ++i)
+    if (triangle_count({surface[i]}) > triangle_count({visuals[i]})) ++count;
+  return count;
 }
 
 std::vector<const Triangles*> parts_of(const BodySurface& body) {

@@ -52,7 +52,8 @@ std::string table(const Table& table) {
   // On a narrow page, the table scrolls sideways, also with the keyboard.
   std::string out = "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"" +
                     escaped(table.caption.empty() ? "Table" : table.caption) + "\"><table>\n";
-  if (!table.caption.empty()) out += "<caption>" + escaped(table.caption) + "</caption>\n";
+  if (!table.caption.empty())
+    out += "<caption><span>" + escaped(table.caption) + "</span></caption>\n";
   if (!table.head.empty()) {
     out += "<tr>";
     for (const std::string& name : table.head)

@@ -105,7 +105,7 @@ std::string poster(const RobotModel& model, std::shared_ptr<const RobotLook> loo
 std::string snapshots_section(const PngPicture& strip, const ReportInput& input) {
   return html::section(
       "snapshots", "Snapshots",
-      "<figure>" +
+      "<figure class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"Snapshots\">" +
           picture(strip, "Eight snapshots of the " + html::name_of(input.runs.back()) +
                              ": the pushes, the extreme postures, and postures between them") +
           "</figure>\n");

@@ -195,7 +195,7 @@ std::string finding_list(const RobotModel& model, const ConsistencyReport& check
 Table summary_table(const RobotModel& model, const CheckSummary& summary) {
   // A value below this, in the unit of its figure, counts as rounding of the computation. Chosen:
   // no limit of a figure is as small.
-  constexpr double kRounding = 1e-6;
+  constexpr double kRounding = 1e-4;
   Table table = {"Figures of the check", {}, {}};
   for (const FindingSpec* spec : summary_figures()) {
     const double value = spec->figure.scale * summary[spec->kind];

@@ -66,10 +66,6 @@ constexpr double kLeastStill = 0.25;
 // half the width of the narrower sole. Chosen: a quarter.
 constexpr double kLeastMargin = 0.25;
 
-// Smallest margin of the ZMP, as a share of half the width of the narrower sole, with which a
-// timing is not simulated in open loop. Measured: walks of HOAP-1 keep 0.8 and of humanoid30 0.5,
-// and stand; H1, whose soles are 28 mm wide and whose ankles do not roll, keeps 0.27 and falls.
-constexpr double kClearMargin = 0.35;
 // Largest margins that are kept in other timings, as shares of half this width. Chosen: between
 // kLeastMargin and the whole half; H1 stands with each of them.
 constexpr double kOtherMargins[] = {0.6, 0.75, 0.9};
@@ -100,33 +96,32 @@ class LocalSearch {
   LocalPace run() {
     const double scale = keys_fly(pattern_) ? 1 : path_scale();
     search(scale, options_.path.most_margin);
-    if (result_.found && options_.world) stand_if_path_stands(scale);
+    if (result_.found && options_.world) stand_if_path_stands();
     return std::move(result_);
   }
 
  private:
-  void search(double path_scale, double most_margin) {
+  // Begins with a path and a trial (see below), and remembers the trial with which it ends.
+  void search(double path_scale, double most_margin, int first_trial = 0) {
     result_ = {};
     result_.path_scale = path_scale;
     most_margin_ = most_margin;
     // The smallest margin is given up first, because a posture may be nearer to the edge than this
     // margin at every pace. After that, the path becomes slower.
-    double least_margin = kLeastMargin * half_sole_width(model_);
-    for (int trial = 0; trial <= kMostSlower; ++trial) {
+    for (trial_ = first_trial; trial_ <= kMostSlower; ++trial_) {
       result_.limited_by.clear();
-      if (trial > 1) result_.path_scale *= kSlowerPath;
-      take_path(least_margin);
-      if (play_rounds() || !stuck_ || (limits_->flies() && trial > 0)) break;
-      least_margin = 0;
+      if (trial_ > std::max(1, first_trial)) result_.path_scale *= kSlowerPath;
+      take_path(trial_ == 0 ? kLeastMargin * half_sole_width(model_) : 0);
+      if (play_rounds() || !stuck_ || (limits_->flies() && trial_ > 0)) break;
     }
   }
 
-  // A timing keeps the ZMP near the edge of a sole for longer than the uniform pace, so a robot
-  // whose ankles hardly hold it may fall. Other timings, whose ZMP need not be so far inside in the
-  // double support, are tried then, and finally the uniform pace.
-  void stand_if_path_stands(double scale) {
+  // A timing keeps the ZMP near the edge of a sole, and torques near their limits, for longer than
+  // the uniform pace, so the robot may fall although it stands at that pace. No margin foretells
+  // this: HOAP-1 may fall with its ZMP 15 mm inside its soles. Other timings, whose ZMP need not be
+  // so far inside in the double support, are tried then, and finally the uniform pace.
+  void stand_if_path_stands() {
     const double half = half_sole_width(model_);
-    if (result_.report.summary[FindingKind::support_margin] >= kClearMargin * half) return;
     try {
       result_.stands = stands(result_.series);
     } catch (const Error& error) {
@@ -138,6 +133,7 @@ class LocalSearch {
     const CommandSeries path = path_;
     const Pattern path_pattern = path_pattern_;
     const double path_scale = path_scale_;
+    const int trial = trial_;
     if (!stands(path)) {
       result_.stands = true;  // no worse than at the uniform pace
       return;
@@ -146,7 +142,7 @@ class LocalSearch {
     for (const double share : kOtherMargins) {
       if (share * half >= options_.path.most_margin) break;  // more than the caller allows
       report(progress_, {"retime", -1, "the robot falls in open loop; another timing is tried"});
-      search(scale, share * half);
+      search(path_scale, share * half, trial);
       if (result_.found && stands(result_.series)) {
         result_.stands = true;
         return;
@@ -476,6 +472,7 @@ class LocalSearch {
   Timing timing_;
   std::vector<double> share_;  // share of the room that may be used, by point
   bool stuck_ = false;         // the limits contradict each other
+  int trial_ = 0;              // the trial of the search (see search())
 };
 
 }  // namespace

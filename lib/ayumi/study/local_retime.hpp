@@ -4,7 +4,8 @@
 // is solved from the ZMP depends on the pace. Along the path, math/path_timing finds the quickest
 // timing within the rows of study/path_limits, which is then made smooth, sampled and checked.
 // Where the check finds an error, a smaller share of the limits may be used, and the next round
-// begins. Where the ZMP comes near the edge of a sole, the motion is simulated in open loop, too.
+// begins. If the robot has to stand where it stands at the uniform pace, the motion is simulated in
+// open loop, too.
 //
 // Where nothing moves, no limit binds: such pauses keep their length, or are passed at the largest
 // pace.

@@ -43,6 +43,12 @@ constexpr double kSameAngle = 0.01;
 /// Chosen: a step of 2e-4 rad in 1 ms is 0.2 rad/s, far below the speed limits of servos.
 constexpr double kSameBase = 2e-5;
 constexpr double kSameJoint = 2e-4;
+/// Time within which such a difference fades after the join [s]. Chosen: the acceleration is then
+/// at most 0.12 rad/s^2; within one tick of 1 ms, it would be 200 rad/s^2, and even a difference of
+/// 1e-5 rad in the legs would move the ZMP out of the soles.
+constexpr double kFade = 0.1;
+/// A smaller difference is rounding and does not fade. Chosen: in one tick it means 1e-3 rad/s^2.
+constexpr double kRoundingOfAJoin = 1e-9;
 
 Feet soles_of(const RobotModel& model, const RobotState& state) {
   RobotData data(model);
@@ -114,6 +120,39 @@ Phase both_feet_until(double time) {
 double rest_to_rest(double u) { return u * u * u * (10 - 15 * u + 6 * u * u); }
 
 int ticks_of(double time, double dt) { return static_cast<int>(std::lround(time / dt)); }
+
+// The difference between the posture at the end of a motion and the one at the beginning of the
+// next motion. It fades within some ticks.
+class PostureFade {
+ public:
+  PostureFade(const RobotState& end, const RobotState& begin, int ticks)
+      : position_(end.base.position - begin.base.position),
+        turn_((end.base.attitude * begin.base.attitude.conjugate()).normalized()),
+        theta_(end.theta - begin.theta),
+        ticks_(ticks) {
+    const double turn = elementary::angle_between(end.base.attitude, begin.base.attitude);
+    if (std::max({position_.norm(), turn, theta_.cwiseAbs().maxCoeff()}) < kRoundingOfAJoin)
+      ticks_ = 0;
+  }
+
+  // The posture of the next motion, `tick` ticks after its beginning.
+  RobotState applied(RobotState state, int tick) const {
+    if (tick >= ticks_) return state;
+    const double left = 1 - rest_to_rest(static_cast<double>(tick) / ticks_);
+    state.base.position += left * position_;
+    state.base.attitude =
+        (elementary::between(Eigen::Quaterniond::Identity(), turn_, left) * state.base.attitude)
+            .normalized();
+    state.theta += left * theta_;
+    return state;
+  }
+
+ private:
+  Vector3d position_;
+  Eigen::Quaterniond turn_;
+  Eigen::VectorXd theta_;
+  int ticks_;
+};
 
 // The samples between two postures on the same soles; the two postures themselves are not included.
 std::vector<RobotState> transition(const RobotModel& model, const RobotState& from,
@@ -287,8 +326,9 @@ Pattern joined(const RobotModel& model, const MotionPart& first, const MotionPar
     if (has_keys(result, side) != has_keys(rest, side))
       write_swings_as_keys(model, side, has_keys(result, side) ? rest : result);
   for (const RobotState& state : between) add_row(*result.table, state);
+  const PostureFade fade(from, to, ticks > 0 ? 0 : ticks_of(kFade, a.dt));
   for (size_t k = skip; k < b.samples.size(); ++k)
-    add_row(*result.table, moved(shift, b.samples[k].state));
+    add_row(*result.table, fade.applied(moved(shift, b.samples[k].state), static_cast<int>(k)));
 
   const double later = a.duration() + ticks * a.dt;
   if (ticks > 0) result.phases.push_back(both_feet_until(later));

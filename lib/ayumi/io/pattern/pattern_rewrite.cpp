@@ -9,6 +9,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -576,11 +577,11 @@ void add_values(const std::string& text, const JsonTree& tree, Marks& marks) {
   for (const JsonTree& part : tree.parts) add_values(text, part, marks);
 }
 
-Marks marks_of(const std::string& text) {
-  Marks marks;
+// Calls `found` with the place of each comment of a JSON text, without white space at its end.
+void for_each_comment(const std::string& text, const std::function<void(size_t, size_t)>& found) {
   const auto add_comment = [&](size_t begin, size_t end) {
     while (end > begin && std::isspace(static_cast<unsigned char>(text[end - 1]))) --end;
-    marks[comments].push_back(text.substr(begin, end - begin));
+    found(begin, end);
   };
   for (size_t i = 0; i < text.size(); ++i) {
     const size_t begin = i;
@@ -595,6 +596,13 @@ Marks marks_of(const std::string& text) {
       add_comment(begin, std::min(i + 1, text.size()));
     }
   }
+}
+
+Marks marks_of(const std::string& text) {
+  Marks marks;
+  for_each_comment(text, [&](size_t begin, size_t end) {
+    marks[comments].push_back(text.substr(begin, end - begin));
+  });
   const JsonTree tree = json_tree(text);
   for (const JsonTree& part : tree.parts)
     if (part.kind != 'v') add_values(text, part, marks);
@@ -653,6 +661,46 @@ std::vector<std::string> lost_marks(const std::string& text, const std::string& 
     if (const size_t count = before[i].size(); count > 0)
       lost.push_back(std::to_string(count) + " " + kMarks[i] + (count == 1 ? "" : "s"));
   return lost;
+}
+
+std::vector<int> lines_with_sides(const std::string& text,
+                                  const std::set<std::string>& sided_names) {
+  const auto is_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; };
+  // Whether a part of the text names a side. "_" belongs to the names of joints, and separates the
+  // words "left" and "right" from others.
+  const auto names_side = [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end;) {
+      size_t last = i;
+      while (last < end && (is_word(text[last]) || text[last] == '_')) ++last;
+      if (sided_names.contains(text.substr(i, last - i))) return true;
+      std::string word;
+      for (size_t k = i; k <= last; ++k) {
+        if (k < last && text[k] != '_') {
+          word += static_cast<char>(std::tolower(static_cast<unsigned char>(text[k])));
+          continue;
+        }
+        if (word == "left" || word == "right") return true;
+        word.clear();
+      }
+      i = last + 1;
+    }
+    return false;
+  };
+  std::set<int> lines;
+  const auto look = [&](size_t begin, size_t end) {
+    for (size_t at = begin; at < end;) {
+      const size_t next = std::min(text.find('\n', at), end);
+      if (names_side(at, next)) lines.insert(line_at(text, at));
+      at = next + 1;
+    }
+  };
+  for_each_comment(text, look);
+  const JsonTree tree = json_tree(text);
+  if (const JsonTree* const name = part_of(tree, "name")) look(name->at.begin, name->at.end);
+  for (const char* const list : {"parameters", "postures"})
+    if (const JsonTree* const named = part_of(tree, list))
+      for (const JsonTree& part : named->parts) look(part.at.key, part.at.begin);
+  return {lines.begin(), lines.end()};
 }
 
 std::optional<RewrittenPattern> rewritten(const std::string& text, const Pattern& before,

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -39,5 +40,12 @@ std::optional<RewrittenPattern> rewritten(const std::string& text, const Pattern
 /// included files, each with its number, such as "3 comments". Both are texts of patterns. An
 /// expression is kept if one with the same parameters is in its place.
 std::vector<std::string> lost_marks(const std::string& text, const std::string& kept);
+
+/// The lines, counted from 1, on which a side is named by words that an edit does not change: in a
+/// comment, in the name of the pattern, or in that of a parameter or of a posture. A side is named
+/// by "left", by "right", and by each of `sided_names`, such as the joints of one side. `text` is
+/// the text of a pattern.
+std::vector<int> lines_with_sides(const std::string& text,
+                                  const std::set<std::string>& sided_names);
 
 }  // namespace ayumi
