@@ -12,6 +12,8 @@
 
 namespace ayumi {
 
+struct ExaminedPattern;
+
 // A value that would have to change by less than this is at a limit of the robot and is not a
 // mistake. The bound is a share of the value's unit (the length of a leg, a radian, the weight, 1).
 // Chosen: 1 mm for a leg of 0.2 m, 0.3 deg.
@@ -57,8 +59,7 @@ class Hypotheses {
   std::vector<Hypothesis> of(Kind kind) const;
 
  private:
-  class Maker;
-  std::unique_ptr<Maker> maker_;
+  std::unique_ptr<const ExaminedPattern> examined_;
 };
 
 }  // namespace ayumi

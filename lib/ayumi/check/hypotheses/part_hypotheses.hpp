@@ -1,0 +1,22 @@
+#pragma once
+// Parts of a pattern that are missing, that contradict others, or that make the motion jump.
+
+#include <vector>
+
+#include "ayumi/check/hypotheses/examined_pattern.hpp"
+#include "ayumi/check/mistake_hypotheses.hpp"
+
+namespace ayumi::hypotheses {
+
+/// A missing swing of a foot that stays behind.
+void swings(const ExaminedPattern& of, std::vector<Hypothesis>& made);
+/// A missing phase on both feet between two phases on one foot.
+void double_supports(const ExaminedPattern& of, std::vector<Hypothesis>& made);
+/// Without the keys of leg joints, which take the legs from the inverse kinematics.
+void leg_keys(const ExaminedPattern& of, std::vector<Hypothesis>& made);
+/// Without keys of one quantity that follows from others.
+void superfluous_keys(const ExaminedPattern& of, std::vector<Hypothesis>& made);
+/// With smooth interpolation in place of steps and corners.
+void interpolations(const ExaminedPattern& of, std::vector<Hypothesis>& made);
+
+}  // namespace ayumi::hypotheses
