@@ -5,6 +5,7 @@
 
 #include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/model/encoder_angles.hpp"
 #include "ayumi/render/clip.hpp"
 
 namespace ayumi::app {
@@ -93,10 +94,11 @@ std::string counts_words(const Dof& dof, const SignTest& test) {
 
 std::string sign_test_words(const RobotModel& model, const std::vector<SignTest>& tests) {
   const Eigen::VectorXd& start = tests.front().table.rows.front().theta;
+  const Eigen::VectorXd zeros = encoder_zeros(model.limits());
   std::string bent;
   for (const SignTest& test : tests) {
     const Dof& dof = model.dofs()[static_cast<size_t>(test.dof)];
-    if (start[test.dof] != 0)
+    if (start[test.dof] != zeros[test.dof])
       bent += (bent.empty() ? "" : ", ") + dof.name + " (" + in_units(dof, start[test.dof]) + ")";
   }
   if (bent.empty())

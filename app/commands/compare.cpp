@@ -25,7 +25,7 @@ using Json = nlohmann::ordered_json;
 constexpr double kComparedDegree = M_PI / 180;
 
 struct CompareCommand {
-  std::string run, robot, log, loads, plot, report;
+  std::string run, robot, log, loads, plot, report, at = "encoder";
   std::vector<std::string> measured;
   std::optional<double> shift;
   std::vector<double> window;
@@ -177,7 +177,7 @@ void write_comparison_report(const Context& context, const CompareCommand& optio
   // The page shows the recording as a ghost beside the run with which it was compared.
   SimulationLog measured;
   if (recordings.angles) {
-    measured = measured_log(log, model, *recordings.angles, found.shift);
+    measured = measured_log(log, *recordings.angles, found.shift);
     input.runs.insert(input.runs.end() - 1, {"measured", &measured, true});
   }
   const Report made = make_report(model, input, {}, context.progress());
@@ -260,6 +260,13 @@ void add_compare(Command& app, Context& context) {
                    "Write a report of the run that shows this comparison, with the recording as a "
                    "ghost (.html).")
       ->type_name("F");
+  command
+      ->add_option("--measured-at", options.at,
+                   "What measured the angles. encoder: the encoders of the servos, whose readings "
+                   "lack the offsets that the robot's file states. joint: instruments at the "
+                   "joints.")
+      ->check(one_of({"encoder", "joint"}))
+      ->capture_default_str();
   command->add_option("--unit", unit, "Unit of the joint columns whose names do not state a unit.")
       ->check(one_of({"rad", "deg"}))
       ->capture_default_str();
@@ -270,6 +277,7 @@ void add_compare(Command& app, Context& context) {
       ->type_name("HZ");
   command->callback([&context] {
     options.reading.degrees = unit == "deg";
+    options.reading.at_joints = options.at == "joint";
     compare_run(context, options);
   });
 }

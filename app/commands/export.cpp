@@ -25,6 +25,7 @@
 #include "ayumi/io/table/table_note.hpp"
 #include "ayumi/limits/amount_text.hpp"
 #include "ayumi/limits/table_safety.hpp"
+#include "ayumi/model/encoder_angles.hpp"
 #include "ayumi/render/gltf.hpp"
 #include "ayumi/sim/simulate.hpp"
 #include "ayumi/task/servo_table.hpp"
@@ -218,6 +219,10 @@ struct CautiousTable {
   TableCaution caution;
 };
 
+bool same_zeros(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  return (a.isZero(0) && b.isZero(0)) || (a.size() == b.size() && a == b);
+}
+
 // The requested table of a run; `log` is the log from which it comes.
 CautiousTable table_of_run(const ExportOptions& options, const RunFolder& run,
                            const SimulationLog& log, const RobotModel& model) {
@@ -248,7 +253,8 @@ CautiousTable table_of_run(const ExportOptions& options, const RunFolder& run,
   if (!table) return {made(log), caution};
   const TableServo wanted = table_servo(model, profile, content);
   const bool as_wanted = table->servo.content == wanted.content &&
-                         table->servo.delay == wanted.delay && table->servo.lag == wanted.lag;
+                         table->servo.delay == wanted.delay && table->servo.lag == wanted.lag &&
+                         same_zeros(table->servo.zeros, wanted.zeros);
   return {as_wanted ? *table : made(log), caution};
 }
 
@@ -326,8 +332,10 @@ void export_gltf(const ExportOptions& options, Context& context) {
 }
 
 /// The table as a motion of any format.
-MotionFile motion_file_of(const Source& source, const ReferenceTrajectory& table) {
+MotionFile motion_file_of(const Source& source, const ReferenceTrajectory& table, bool played) {
   MotionFile motion = motion_of_table(table);
+  // What a robot plays are angles of its encoders.
+  if (played) motion.values = encoder_rows(std::move(motion.values), table.servo.zeros);
   if (source.torque.rows() == motion.rows()) motion.torque = source.torque;
   return motion;
 }
@@ -407,6 +415,25 @@ std::string words_of(const TableServo& servo) {
          (servo.content == "lead" ? "" : ", and they also compensate for the sag");
 }
 
+/// Whether the file holds angles of encoders: a robot plays it.
+bool holds_zeros(const ExportOptions& options, const ReferenceTrajectory& table) {
+  return plays(options) && !table.servo.zeros.isZero(0);
+}
+
+/// A line about the offsets of this robot's encoders; empty if there are none.
+std::string words_on_zeros(const ExportOptions& options, const ReferenceTrajectory& table) {
+  if (table.servo.zeros.isZero(0)) return "";
+  if (!plays(options))
+    return "  joint angles; the offsets of this robot's encoders are not subtracted, because no "
+           "robot plays this format\n";
+  std::vector<std::string> joints;
+  for (size_t j = 0; j < table.joints.size(); ++j)
+    if (const double zero = table.servo.zeros[static_cast<Eigen::Index>(j)]; zero != 0)
+      joints.push_back(table.joints[j] + " " + text::fixed(zero * 180 / EIGEN_PI, 3));
+  return "  for this robot alone: the offsets of its encoders are subtracted (" +
+         text::join(joints, ", ") + " deg)\n";
+}
+
 std::string in_words(const ExportOptions& options, const Source& source, const SafeTable& safe,
                      const std::vector<std::string>& refused) {
   const SafetyReport& report = safe.report;
@@ -423,12 +450,14 @@ std::string in_words(const ExportOptions& options, const Source& source, const S
           (plays(options) ? "  written although " : "  the table is not for a robot, because ") +
           reason + "\n";
   if (const MotionFormat* format = motion_format(options)) {
-    const std::string lost = cannot_hold(*format, motion_file_of(source, safe.table));
+    const std::string lost =
+        cannot_hold(*format, motion_file_of(source, safe.table, format->played));
     if (!lost.empty()) text += "  the format cannot hold " + lost + "\n";
   }
   const TableServo& servo = safe.table.servo;
   if (!servo.content.empty())
     text += "  made for the servos of profile " + servo.profile + ": " + words_of(servo) + "\n";
+  text += words_on_zeros(options, safe.table);
   text += "  ramp " + text::brief(report.ramp) + " s, hold " + text::brief(report.hold) +
           " s; the pattern begins at " + text::brief(report.ramp) + " s of the table";
   if (!report.worst_joint.empty())
@@ -498,9 +527,10 @@ void write_motion(const MotionFormat& format, const ExportOptions& options, cons
                   const Source& source, const SafeTable& safe) {
   std::vector<std::pair<fs::path, std::string>> files;
   if (source.original) files.emplace_back(options.output, *source.original);
-  for (WrittenFile& file : source.original
-                               ? std::vector<WrittenFile>()
-                               : format.write(source.model, motion_file_of(source, safe.table))) {
+  for (WrittenFile& file :
+       source.original
+           ? std::vector<WrittenFile>()
+           : format.write(source.model, motion_file_of(source, safe.table, format.played))) {
     fs::path path = options.output;
     if (!file.extension.empty()) path.replace_extension(file.extension);
     refuse_overwriting(context, path);
@@ -554,11 +584,15 @@ std::string as_json(const ExportOptions& options, const Source& source, const Sa
       {"servo", safe.table.servo.content.empty()
                     ? nlohmann::ordered_json(nullptr)
                     : nlohmann::ordered_json(safe.table.servo.content)},
+      {"offsets_rad", holds_zeros(options, safe.table)
+                          ? nlohmann::ordered_json(std::vector<double>(
+                                safe.table.servo.zeros.begin(), safe.table.servo.zeros.end()))
+                          : nlohmann::ordered_json(nullptr)},
       {"imported_rows_unchanged", source.kept.has_value() || source.original.has_value()},
       {"joints", safe.table.joints},
       {"cannot_hold", motion_format(options)
-                          ? nlohmann::ordered_json(cannot_hold(*motion_format(options),
-                                                               motion_file_of(source, safe.table)))
+                          ? nlohmann::ordered_json(cannot_hold(
+                                *motion_format(options), motion_file_of(source, safe.table, false)))
                           : nlohmann::ordered_json("")},
       {"profile", options.safety.profile},
       {"sufficient_profiles", sufficient},

@@ -48,7 +48,7 @@ struct Played {
 
 /// How closely a simulated robot follows the targets.
 struct Tracking {
-  double mean = 0, most = 0;  ///< mean and largest |what the encoder reads - target| [rad]
+  double mean = 0, most = 0;  ///< mean and largest |angle - target| of the joints [rad]
   std::string joint;          ///< joint of the largest difference
   double at = 0;              ///< time of the largest difference [s]
 };
@@ -95,9 +95,11 @@ Played read_played(const ReplayCommand& options, const RobotModel& model,
     const HoapFile sequence =
         parse_hoap(bytes, options.file, model,
                    options.rate > 0 ? static_cast<int>(std::lround(1000 / options.rate)) : 0);
-    return {hoap_targets(model, sequence), "hoap", sequence.layout.name, note_of(options.file)};
+    return {hoap_targets(model, sequence, options.profile), "hoap", sequence.layout.name,
+            note_of(options.file)};
   }
-  const ImportedMotion read = read_motion_rows(bytes, options.file, model, {.rate = options.rate});
+  const ImportedMotion read =
+      read_motion_rows(bytes, options.file, model, {.rate = options.rate, .sent = true});
   Played played{{}, read.format, "", note_of(options.file)};
   add_caution(played.caution, read.caution);
   played.table.dt = read.motion.dt;
@@ -113,8 +115,8 @@ Played read_played(const ReplayCommand& options, const RobotModel& model,
 /// The motion of the table as a plan, which states where feet and COG should be, for the verdict.
 Task planned(const ReplayCommand& options, const RobotModel& model, const std::string& bytes,
              const BoardTargets& board, const Context& context) {
-  ImportedMotion read =
-      read_motion(bytes, options.file, model, {.rate = options.rate, .commands = true});
+  ImportedMotion read = read_motion(bytes, options.file, model,
+                                    {.rate = options.rate, .commands = true, .sent = true});
   // In the ramp, the columns of the base do not belong to its posture; there, the standing feet
   // determine the base.
   const std::vector<Support>& support = read.motion.support;
@@ -139,7 +141,7 @@ Task planned(const ReplayCommand& options, const RobotModel& model, const std::s
   return task;
 }
 
-Tracking tracking_of(const SimulationLog& log, const ActuatorLimits& actuators, size_t rows) {
+Tracking tracking_of(const SimulationLog& log, size_t rows) {
   Tracking tracking;
   double sum = 0;
   long count = 0;
@@ -148,8 +150,7 @@ Tracking tracking_of(const SimulationLog& log, const ActuatorLimits& actuators, 
     if (log.result.fell_at >= 0 && t > log.result.fell_at) break;
     const SimulationSample& s = log.samples[k];
     for (Eigen::Index j = 0; j < s.target.size(); ++j) {
-      const double reading = s.state.theta[j] - actuators.servo[static_cast<size_t>(j)].offset;
-      const double error = std::abs(reading - s.target[j]);
+      const double error = std::abs(s.state.theta[j] - s.target[j]);
       sum += error;
       ++count;
       if (error <= tracking.most) continue;
@@ -245,8 +246,7 @@ void replay(Context& context, const ReplayCommand& options) {
     how.settle = options.settle;
     how.seed = context.seed;
     logs.push_back(simulate(task, how, context.progress(), context.command_line));
-    const Tracking tracking = tracking_of(logs.back(), model.limits(options.profile),
-                                          static_cast<size_t>(board.targets.cols()));
+    const Tracking tracking = tracking_of(logs.back(), static_cast<size_t>(board.targets.cols()));
     words += "  " + plant + ": " + outcome_text(logs.back()) + "; the joints are " +
              in_degrees(tracking.mean) + " from their targets on average and " +
              in_degrees(tracking.most, 2) + " at most (" + tracking.joint + " at " +

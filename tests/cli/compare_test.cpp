@@ -74,60 +74,86 @@ TEST(CompareCommand, NumbersPictureAndReport) {
   EXPECT_NE(none.err.find("name a recording"), std::string::npos);
 }
 
+/// The numbers of the columns whose names begin with `column`, by row.
+std::vector<double> column_of(const std::string& table, const std::string& column) {
+  std::istringstream lines(table);
+  std::string line, cell;
+  size_t at = 0;
+  std::vector<double> values;
+  for (bool head = true; std::getline(lines, line);) {
+    if (line.starts_with('#')) continue;
+    std::istringstream cells(line);
+    for (size_t i = 0; std::getline(cells, cell, ','); ++i) {
+      if (head && cell.starts_with(column)) at = i;
+      if (!head && i == at) values.push_back(std::stod(cell));
+    }
+    head = false;
+  }
+  return values;
+}
+
+const char* const kSquat = R"(
+  "phases": [{ "until": 2, "support": "both" }],
+  "keyframes": [{ "t": 0, "cog": { "height": 0.245 } }, { "t": 1, "cog": { "height": 0.225 } },
+                { "t": 2, "cog": { "height": 0.245 } }]
+})";
+
 // Servos of the default profile override those of the robot. The sidecar of `identify` has an
-// effect nevertheless, and the zero offset that the recording shows is that of the simulated joint.
-TEST(IdentifyCommand, ItsSidecarHasEffectOverServosOfAProfile) {
+// effect nevertheless: the zero offset that the recording shows is compensated in the next table.
+// When the unit that has this offset plays this table, its knee is where the pattern wants it. On
+// the other unit, it is wrong by exactly the offset.
+TEST(IdentifyCommand, TheNextTableCompensatesTheOffsetThatWasFound) {
   const Folder folder;
   const auto ayumi = [&](const std::vector<std::string>& words) {
-    return run_program(words, folder.path());
+    const Output out = run_program(words, folder.path());
+    EXPECT_EQ(out.exit_code, 0) << out.err << out.out;
+    return out;
   };
+  const double degree = M_PI / 180, offset = 0.4 * degree;
   write(folder / "base.json", R"({
     "format": "ayumi.robot/1", "base": "hoap1", "name": "mine",
     "profiles": [{ "name": "hoap1", "servos": [{ "joints": ["*"], "kp": 3000, "kd": 12 }] }]
   })");
-  const auto log_of = [&](const std::string& robot, const std::string& name) {
-    write(folder / (name + ".json"), R"({
-      "format": "ayumi.pattern/1", "name": "squat", "robot": ")" +
-                                         robot + R"(",
-      "phases": [{ "until": 2, "support": "both" }],
-      "keyframes": [{ "t": 0, "cog": { "height": 0.245 } }, { "t": 1, "cog": { "height": 0.225 } },
-                    { "t": 2, "cog": { "height": 0.245 } }]
-    })");
-    const Output run = ayumi({"run", name + ".json", "-o", name, "-q", "--no-pictures"});
-    EXPECT_EQ(run.exit_code, 0) << run.err;
-    const Output table = ayumi({"export", name, "--format", "csv-log", "-o", name + ".csv", "-q"});
-    EXPECT_EQ(table.exit_code, 0) << table.err;
-    return contents(folder / (name + ".csv"));
+  write(folder / "true.json", R"({
+    "format": "ayumi.robot/1", "base": "base.json", "name": "true",
+    "profiles": [{ "name": "hoap1", "servos": [{ "joints": ["l_knee"], "offset_deg": 0.4 }] }]
+  })");
+  const std::string head = R"({ "format": "ayumi.pattern/1", "name": "squat", "robot": ")";
+  write(folder / "base_squat.json", head + "base.json\"," + kSquat);
+  write(folder / "found_squat.json", head + "found.json\"," + kSquat);
+  // The knee's angle, at rest at the end, when a robot plays a table.
+  const auto knee_of = [&](const std::string& table, const std::string& robot) {
+    ayumi({"replay", table, "--robot", robot, "--plant", "ayumi", "-o", "out", "--force", "-q"});
+    ayumi({"export", "out", "--format", "csv-log", "-o", "log.csv", "--robot", robot, "--force",
+           "-q"});
+    return column_of(contents(folder / "log.csv"), "theta.l_knee").back();
   };
-  const std::string log = log_of("base.json", "out");
-  const double offset = 0.2 * M_PI / 180;
-  write(folder / "command.csv", recording_of(log, 0, 0));
-  write(folder / "measured.csv", recording_of(log, 0, offset));
-  const Output found = ayumi({"identify", "base.json", "--command", "command.csv", "--measured",
-                              "measured.csv", "-o", "found.json", "-q"});
-  ASSERT_EQ(found.exit_code, 0) << found.err;
+  ayumi({"export", "base_squat.json", "--format", "csv", "-o", "base.csv", "-q"});
+  const double wanted = knee_of("base.csv", "base.json");
+  EXPECT_NEAR(knee_of("base.csv", "true.json") - wanted, offset, 0.02 * degree);
+  write(folder / "measured.csv", recording_of(contents(folder / "log.csv"), 0, 0));
+  write(folder / "command.csv", contents(folder / "base.csv"));
+  // The recording is as long as the command.
+  std::string measured = contents(folder / "measured.csv");
+  const size_t rows = column_of(contents(folder / "command.csv"), "t").size();
+  size_t end = 0;
+  for (size_t k = 0; k <= rows; ++k) end = measured.find('\n', end) + 1;
+  write(folder / "measured.csv", measured.substr(0, end));
+  ayumi({"identify", "base.json", "--command", "command.csv", "--measured", "measured.csv", "-o",
+         "found.json", "-q"});
   const Json sidecar = Json::parse(contents(folder / "found.json"));
   ASSERT_EQ(sidecar.at("profiles").at(0).at("name"), "hoap1");
   for (const Json& group : sidecar.at("profiles").at(0).at("servos"))
     EXPECT_NEAR(group.at("offset"), group.at("joints").at(0) == "l_knee" ? offset : 0.0,
-                0.05 * offset)
+                0.02 * degree)
         << group;
-  // The knee of a run with this sidecar stands farther by the offset when the run begins and ends.
-  const auto knee_at_the_end = [](const std::string& text) {
-    std::istringstream lines(text);
-    std::string line, head, last, cell;
-    std::getline(lines, head);
-    while (std::getline(lines, line)) last = line;
-    std::istringstream names(head), cells(last);
-    double angle = 0, target = 0;
-    for (std::string name; std::getline(names, name, ',') && std::getline(cells, cell, ',');) {
-      if (name.starts_with("theta.l_knee")) angle = std::stod(cell);
-      if (name.starts_with("target.l_knee")) target = std::stod(cell);
-    }
-    return angle - target;
-  };
-  EXPECT_NEAR(knee_at_the_end(log_of("found.json", "again")) - knee_at_the_end(log), offset,
-              0.3 * offset);
+  for (const std::string format : {"csv", "hoap"}) {
+    const std::string file = "found_" + format + ".csv";
+    ayumi({"export", "found_squat.json", "--format", format, "-o", file, "-q", "--servo", "lead"});
+    EXPECT_NEAR(knee_of(file, "true.json"), wanted, 0.02 * degree);
+    EXPECT_NEAR(knee_of(file, "base.json") - wanted, -offset, 0.02 * degree);
+  }
+  EXPECT_NE(contents(folder / "found_csv.csv").find("# servo_offset: "), std::string::npos);
 }
 
 }  // namespace

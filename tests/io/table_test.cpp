@@ -117,6 +117,27 @@ TEST(Table, JsonReadsBackToTheSameBits) {
   EXPECT_EQ(reference_json(back), text);
 }
 
+// Files hold the angles that the encoders of the unit read, and the rows of a table hold those of
+// its joints.
+TEST(Table, AFileHoldsTheAnglesOfEncoders) {
+  ReferenceTrajectory reference = random_reference();
+  const ReferenceTrajectory plain = reference;
+  reference.servo.zeros = Eigen::Vector2d(0.007, -0.02);
+  const std::string text = reference_csv(reference);
+  EXPECT_NE(text.find("# servo_offset: 0.007 -0.02\n"), std::string::npos);
+  for (const std::string& file : {text, reference_json(reference)}) {
+    const ReferenceTrajectory back = read_reference(put(file));
+    EXPECT_EQ(back.servo.zeros, reference.servo.zeros);
+    for (size_t k = 0; k < back.rows.size(); ++k)
+      EXPECT_LT((back.rows[k].theta - plain.rows[k].theta).norm(), 4e-15);
+  }
+  EXPECT_LT((read_dense_table(put(text)).theta.row(3).transpose() - plain.rows[3].theta).norm(),
+            4e-15);
+  std::string bad = text;
+  bad.replace(bad.find("0.007 -0.02"), 11, "0.007");
+  EXPECT_NE(reference_message(bad).find("servo_offset"), std::string::npos);
+}
+
 TEST(Table, SaysWhatItHolds) {
   const std::string text = reference_csv(random_reference());
   for (const char* const line :

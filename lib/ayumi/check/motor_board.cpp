@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/model/encoder_angles.hpp"
 
 namespace ayumi {
 
@@ -43,8 +44,8 @@ class Watch {
 
 BoardTargets board_targets(const RobotModel& model, const ReferenceTrajectory& table,
                            const SafetyOptions& options) {
-  const Eigen::MatrixXi rounded =
-      encoder_counts(model, table, count_step_limits(model, table.dt, options));
+  const Eigen::MatrixXi rounded = encoder_counts(model, table, options);
+  const Eigen::VectorXd zeros = encoder_zeros(model.limits(options.profile));
   const double ms = table.dt * 1000;
   const bool whole = std::round(ms) >= 1 && std::abs(ms - std::round(ms)) < kWhole;
   const Eigen::Index share = whole ? std::lround(ms) : 1;
@@ -59,8 +60,9 @@ BoardTargets board_targets(const RobotModel& model, const ReferenceTrajectory& t
     const double scale = counts != 0 ? counts : 1;
     double lower = -1e300, upper = 1e300, step = model.limits(options.profile).speed[j] * result.dt;
     if (dof.limited) {
-      lower = std::min(dof.lower * scale, dof.upper * scale);
-      upper = std::max(dof.lower * scale, dof.upper * scale);
+      const double a = (dof.lower - zeros[j]) * scale, b = (dof.upper - zeros[j]) * scale;
+      lower = std::min(a, b);
+      upper = std::max(a, b);
     }
     if (counts != 0) {
       lower = std::ceil(lower - kWhole);
@@ -73,7 +75,7 @@ BoardTargets board_targets(const RobotModel& model, const ReferenceTrajectory& t
     double board = 0;
     for (Eigen::Index k = 0; k < result.targets.cols(); ++k) {
       const Eigen::Index row = k / share;
-      const double x = table.rows[static_cast<size_t>(row)].theta[at] * scale;
+      const double x = (table.rows[static_cast<size_t>(row)].theta[at] - zeros[j]) * scale;
       double asked = x;
       if (counts != 0)
         asked = std::abs(x - std::round(x)) < kWhole ? std::round(x) : rounded(row, j);
@@ -84,7 +86,7 @@ BoardTargets board_targets(const RobotModel& model, const ReferenceTrajectory& t
       watch.note("range", asked - fits, t);
       watch.note("position", fits - inside, t);
       watch.note("speed", inside - board, t);
-      result.targets(j, k) = board / scale;
+      result.targets(j, k) = board / scale + zeros[j];
     }
     result.clamps.insert(result.clamps.end(), watch.found().begin(), watch.found().end());
   }

@@ -21,8 +21,9 @@ struct Clamp {
 
 /// Targets as the servos receive them.
 struct BoardTargets {
-  double dt = 0.001;        ///< tick of the board [s]
-  Eigen::MatrixXd targets;  ///< targets, dof x ticks, in the robot's order of joints [rad]
+  double dt = 0.001;  ///< tick of the board [s]
+  /// Targets as joint angles, dof x ticks, in the robot's order of joints [rad].
+  Eigen::MatrixXd targets;
   std::vector<Clamp> clamps;
 };
 

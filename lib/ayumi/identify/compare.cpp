@@ -64,25 +64,12 @@ double interpolated(const Eigen::Ref<const VectorXd>& values, double dt, double 
   return (1 - u) * values[k] + u * values[k + 1];
 }
 
-// Zero offsets of the encoders with which the run was simulated: the angle of a joint minus the
-// reading of its encoder [rad, m].
-VectorXd encoder_offsets(const RobotModel& model, const SimulationLog& log) {
-  VectorXd offsets = VectorXd::Zero(model.dof_count());
-  const std::vector<std::string> known = model.profile_names();
-  if (std::find(known.begin(), known.end(), log.provenance.profile) == known.end()) return offsets;
-  const std::vector<ServoDescription>& servos = model.limits(log.provenance.profile).servo;
-  for (Index j = 0; j < offsets.size(); ++j) offsets[j] = servos[static_cast<size_t>(j)].offset;
-  return offsets;
-}
-
-// The readings of the encoders of the simulated robot.
 AngleTable angles_of(const RobotModel& model, const SimulationLog& log) {
-  const VectorXd offsets = encoder_offsets(model, log);
   AngleTable table;
   table.dt = log.dt;
   table.theta.resize(static_cast<Index>(log.samples.size()), model.dof_count());
   for (size_t k = 0; k < log.samples.size(); ++k)
-    table.theta.row(static_cast<Index>(k)) = (log.samples[k].state.theta - offsets).transpose();
+    table.theta.row(static_cast<Index>(k)) = log.samples[k].state.theta.transpose();
   table.has.assign(static_cast<size_t>(model.dof_count()), 1);
   table.resolution = VectorXd::Zero(model.dof_count());
   return table;
@@ -412,17 +399,14 @@ Comparison compare(const RobotModel& model, const SimulationLog& log,
   return result;
 }
 
-SimulationLog measured_log(const SimulationLog& log, const RobotModel& model,
-                           const AngleTable& measured, double shift) {
+SimulationLog measured_log(const SimulationLog& log, const AngleTable& measured, double shift) {
   SimulationLog result = log;
-  const VectorXd offsets = encoder_offsets(model, log);
   for (size_t k = 0; k < result.samples.size(); ++k) {
     const double t = log.dt * static_cast<double>(k) - shift;
     if (t < 0 || t > measured.duration()) continue;
-    for (int j = 0; j < model.dof_count(); ++j)
+    for (Index j = 0; j < measured.theta.cols(); ++j)
       if (measured.has[static_cast<size_t>(j)])
-        result.samples[k].state.theta[j] =
-            offsets[j] + interpolated(measured.theta.col(j), measured.dt, t);
+        result.samples[k].state.theta[j] = interpolated(measured.theta.col(j), measured.dt, t);
   }
   return result;
 }

@@ -68,14 +68,12 @@ struct CompareOptions {
 
 /// Throws Error(bad_file) "`file`: what" if the recording and the run have no time in common.
 /// Joints and sensors whose sign or unit differs, feet whose loads are exchanged, and joints that
-/// do not follow are noted. The recording contains the readings of the encoders, so that the zero
-/// offsets of the run's servos are subtracted from the simulated angles.
+/// do not follow are noted.
 Comparison compare(const RobotModel& model, const SimulationLog& log,
                    const std::optional<AngleTable>& measured, const SensorTable& sensors,
                    const CompareOptions& options, const std::string& file);
 
 /// The run with the measured joint angles instead of the simulated ones, to be drawn beside it.
-SimulationLog measured_log(const SimulationLog& log, const RobotModel& model,
-                           const AngleTable& measured, double shift);
+SimulationLog measured_log(const SimulationLog& log, const AngleTable& measured, double shift);
 
 }  // namespace ayumi

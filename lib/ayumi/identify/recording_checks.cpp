@@ -8,6 +8,7 @@
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/identify/exchanged_joints.hpp"
 #include "ayumi/identify/lost_rows.hpp"
 
 namespace ayumi {
@@ -164,7 +165,13 @@ std::vector<std::string> motion_complaints(const RobotModel& model, const AngleT
                                            const AngleTable& measured, double shift, double begin,
                                            double end) {
   std::vector<std::string> complaints;
+  std::vector<char> exchanged(static_cast<size_t>(model.dof_count()), 0);
+  for (const auto& group : exchanged_joints(model, command, measured, shift, shift, begin, end)) {
+    complaints.push_back(exchange_words(model, group));
+    for (const Index j : group) exchanged[static_cast<size_t>(j)] = 1;
+  }
   for (const Index j : moving_joints(command, measured)) {
+    if (exchanged[static_cast<size_t>(j)]) continue;
     const Relation r = relation(command, measured, j, shift, begin, end);
     std::string wrong = wrong_sign_or_unit(r);
     if (range(measured, j) <= 0)
@@ -201,6 +208,10 @@ void require_answer(const RobotModel& model, const AngleTable& command, const An
              text::fixed(asked, 3) +
              " s; the recording is incomplete, has another rate (give --rate), or belongs to "
              "another command");
+  if (const auto groups = exchanged_joints(model, command, measured, 0, longest_lag, 0, asked);
+      !groups.empty())
+    complain(exchange_words(model, groups.front()) +
+             "; correct the order of the columns or of the encoders");
   for (const Index j : dofs) {
     const std::string wrong =
         wrong_sign_or_unit(relation(command, measured, j, 0, 0, command.duration()));

@@ -21,8 +21,8 @@ double time_shift(const RobotModel& model, const AngleTable& command, const Angl
                   double reach);
 
 /// Complaints about the joints of `measured`, which is `shift` [s] behind, from `begin` to `end` of
-/// the command's time: another sign or unit, or a joint that does not follow. Each complaint is one
-/// line.
+/// the command's time: joints that are exchanged, another sign or unit, or a joint that does not
+/// follow. Each complaint is one line.
 std::vector<std::string> motion_complaints(const RobotModel& model, const AngleTable& command,
                                            const AngleTable& measured, double shift, double begin,
                                            double end);

@@ -1,6 +1,6 @@
-// Counts are theta [deg] x counts_per_degree. For a real step s <= cap there is always a choice of
-// neighbours whose whole step is <= cap: upwards floor(x + s) - floor(x) <= cap, and downwards the
-// same with ceilings. So rounding never violates a limit that the motion keeps.
+// Counts are encoder angles [deg] x counts_per_degree. For a real step s <= cap there is always a
+// choice of neighbours whose whole step is <= cap: upwards floor(x + s) - floor(x) <= cap, and
+// downwards the same with ceilings. So rounding never violates a limit that the motion keeps.
 #include "ayumi/limits/table_safety.hpp"
 
 #include <algorithm>
@@ -12,6 +12,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/limits/amount_text.hpp"
+#include "ayumi/model/encoder_angles.hpp"
 
 namespace ayumi {
 
@@ -48,10 +49,10 @@ TargetRange soft_limits(const RobotModel& model, const Dof& dof) {
   return dof.limited ? TargetRange{dof.lower + margin, dof.upper - margin} : TargetRange{};
 }
 
-TargetRange count_limits(const RobotModel& model, const Dof& dof) {
+TargetRange count_limits(const RobotModel& model, const Dof& dof, double zero) {
   const TargetRange soft = soft_limits(model, dof);
   const double scale = counts_per_radian(dof);
-  const double a = soft.lower * scale, b = soft.upper * scale;
+  const double a = (soft.lower - zero) * scale, b = (soft.upper - zero) * scale;
   return {std::ceil(std::min(a, b) - kCountSlack), std::floor(std::max(a, b) + kCountSlack)};
 }
 
@@ -90,10 +91,14 @@ int nearest_count(double x, const TargetRange& range, double previous, double st
 // Computes the encoder counts of one joint, row after row.
 class CountRounder {
  public:
-  CountRounder(const RobotModel& model, const Dof& dof, double step)
-      : scale_(counts_per_radian(dof)), range_(count_limits(model, dof)), step_(step) {}
+  CountRounder(const RobotModel& model, const Dof& dof, double zero, double step)
+      : scale_(counts_per_radian(dof)),
+        zero_(zero),
+        range_(count_limits(model, dof, zero)),
+        step_(step) {}
+  /// `theta` is the angle of the joint.
   int next(double theta) {
-    const double x = theta * scale_;
+    const double x = (theta - zero_) * scale_;
     const double previous = first_ ? x : previous_;
     previous_ = nearest_count(x, range_, previous, first_ ? kInfinity : step_);
     first_ = false;
@@ -102,6 +107,7 @@ class CountRounder {
 
  private:
   double scale_;  // counts per rad
+  double zero_;   // angle of the joint while its encoder reads 0
   TargetRange range_;
   double step_;  // the largest step in counts
   int previous_ = 0;
@@ -147,7 +153,7 @@ class JointJudge {
         share_(options.step_share),
         step_(scale_ > 0 ? count_step_limits(model, dt, options)[dof]
                          : largest_steps(model, dt, options)[dof]),
-        rounder_(model, dof_, step_) {}
+        rounder_(model, dof_, encoder_zeros(model.limits(options.profile))[dof], step_) {}
 
   void next(double theta, double t) {
     position(theta, t);
@@ -420,14 +426,16 @@ Eigen::VectorXd largest_steps(const RobotModel& model, double dt, const SafetyOp
 }
 
 Eigen::MatrixXi encoder_counts(const RobotModel& model, const ReferenceTrajectory& table,
-                               const Eigen::VectorXd& step_limits) {
+                               const SafetyOptions& options) {
+  const Eigen::VectorXd step_limits = count_step_limits(model, table.dt, options),
+                        zeros = encoder_zeros(model.limits(options.profile));
   const std::vector<Eigen::Index> columns = columns_of(model, table.joints, table.rows.size());
   Eigen::MatrixXi counts =
       Eigen::MatrixXi::Zero(static_cast<Eigen::Index>(table.rows.size()), model.dof_count());
   for (int dof = 0; dof < model.dof_count(); ++dof) {
     const Dof& joint = model.dofs()[static_cast<size_t>(dof)];
     if (counts_per_radian(joint) == 0) continue;
-    CountRounder rounder(model, joint, step_limits[dof]);
+    CountRounder rounder(model, joint, zeros[dof], step_limits[dof]);
     const Eigen::Index column = columns[static_cast<size_t>(dof)];
     for (Eigen::Index k = 0; k < counts.rows(); ++k)
       counts(k, dof) = rounder.next(table.rows[static_cast<size_t>(k)].theta[column]);

@@ -108,11 +108,12 @@ void add_violations(SafeTable& safe, const std::vector<SafetyViolation>& violati
 SafeTable make_safe_run(const RobotModel& model, const ReferenceTrajectory& reference,
                         const Eigen::MatrixXd& torque, const SafetyOptions& options);
 
-/// The encoder counts of every row, rows x dof in the robot's joint order: the nearest whole count,
-/// or its neighbour (less than one count off) if only this neighbour keeps the position limits and
-/// `step_limits` (counts per tick, by dof). Joints without an encoder give 0.
+/// The encoder counts of every row, rows x dof in the robot's joint order, with the encoder zeros
+/// of the profile of the options: the nearest whole count, or its neighbour (less than one count
+/// off) if only this neighbour keeps the position limits and count_step_limits(). Joints without an
+/// encoder give 0.
 Eigen::MatrixXi encoder_counts(const RobotModel& model, const ReferenceTrajectory& table,
-                               const Eigen::VectorXd& step_limits);
+                               const SafetyOptions& options);
 
 /// The largest step in a tick, by dof, in counts: the smaller of the motor board's limit and the
 /// profile's speed limit; infinite for joints without an encoder.

@@ -22,10 +22,14 @@ struct TableServo {
   /// The transport delay, and the time by which a joint is behind its target [s]. Each is one
   /// number for all joints, or one per joint in the order of the columns.
   std::string delay, lag;
+  /// The zeros of the encoders of the unit that receives the table (model/encoder_angles), in the
+  /// order of the columns [rad, m]; empty if they are not known. Files hold encoder angles, and the
+  /// rows of a ReferenceTrajectory hold joint angles.
+  Eigen::VectorXd zeros = {};
 };
 
 struct ReferenceRow {
-  Eigen::VectorXd theta;  ///< servo targets in the order of the joints [rad]
+  Eigen::VectorXd theta;  ///< servo targets as joint angles, in the order of the joints [rad]
   BasePose base;          ///< planned or reference base in the world
   Eigen::Vector3d cog = Eigen::Vector3d::Zero();  ///< COG in the world [m]
   Eigen::Vector3d zmp = Eigen::Vector3d::Zero();  ///< ZMP in the world [m]

@@ -8,6 +8,7 @@
 
 #include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/model/encoder_angles.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/sim/plant/plant.hpp"
 #include "ayumi/sim/standing_calibration.hpp"
@@ -82,6 +83,9 @@ Simulator::Simulator(const RobotModel& model, const CommandSeries& series,
   for (Eigen::Index j = 0; j < counts_.size(); ++j)
     counts_[j] =
         std::abs(model_->dofs()[static_cast<size_t>(j)].encoder.counts_per_degree) * 180 / M_PI;
+  // The law knows the zeros of the robot's file. An uncertain robot may have others.
+  if (const VectorXd known = encoder_zeros(model.limits(options.profile)); !known.isZero(0))
+    zeros_ = known;
   model.sole(Side::left);  // throws if the robot has no soles
   set_scenario(options.scenario);
   if (options.targets)
@@ -91,7 +95,7 @@ Simulator::Simulator(const RobotModel& model, const CommandSeries& series,
   plant_.set_state(controller_.start());
   for (long i = -std::lround(kBeforeStart / h_); i < 0; ++i) {
     schedule_.fill(i, plant_.data(), input_);
-    report_ = plant_.step(controller_.target(), input_, h_);
+    report_ = plant_.step(sent(controller_.target()), input_, h_);
   }
   if (!options.true_state && options.controller.type != ControllerKind::none) calibrate_ankles();
 }
@@ -122,7 +126,7 @@ void Simulator::calibrate_ankles() {
     encoder_offset_ = calibration.offsets();
     const int steps = own_plant ? 1 : options_.substeps;
     for (int i = 0; i < steps; ++i)
-      report_ = plant_.step(controller_.target() + encoder_offset_, input_, dt / steps);
+      report_ = plant_.step(sent(controller_.target() + encoder_offset_), input_, dt / steps);
   }
   if (!calibration.done() || !calibration.found()) {
     plant_ = before;
@@ -139,10 +143,18 @@ void Simulator::calibrate_ankles() {
 }
 
 const Measurement& Simulator::corrected(const Measurement& measurement) {
-  if (encoder_offset_.size() == 0) return measurement;
+  if (encoder_offset_.size() == 0 && zeros_.size() == 0) return measurement;
   corrected_ = measurement;
-  corrected_.theta -= encoder_offset_;
+  if (zeros_.size() > 0) corrected_.theta += zeros_;
+  if (encoder_offset_.size() > 0) corrected_.theta -= encoder_offset_;
   return corrected_;
+}
+
+/// The targets as the servos receive them: encoder angles.
+const VectorXd& Simulator::sent(const VectorXd& target) {
+  if (zeros_.size() == 0) return target;
+  sent_ = target - zeros_;
+  return sent_;
 }
 
 void Simulator::set_scenario(const std::vector<Disturbance>& scenario) {
@@ -212,16 +224,18 @@ const ControlOutput& Simulator::with_targets_of_caller(double t, const ControlOu
   return changed_;
 }
 
-/// The output with the targets that the servos receive: they are angles as the encoders read them,
-/// and whole counts if the sensors are as the sidecar describes them.
+/// The output with the targets that the servos receive: the offsets that were estimated at rest are
+/// added, and the encoders read whole counts if the sensors are as the sidecar describes them.
 const ControlOutput& Simulator::in_counts(const ControlOutput& out) {
   if (encoder_offset_.size() == 0 && !counts_targets_) return out;
   changed_ = out;
   if (encoder_offset_.size() > 0) changed_.target += encoder_offset_;
   if (!counts_targets_) return changed_;
   for (Eigen::Index j = 0; j < counts_.size(); ++j)
-    if (counts_[j] > 0)
-      changed_.target[j] = std::round(changed_.target[j] * counts_[j]) / counts_[j];
+    if (counts_[j] > 0) {
+      const double zero = zeros_.size() > 0 ? zeros_[j] : 0;
+      changed_.target[j] = std::round((changed_.target[j] - zero) * counts_[j]) / counts_[j] + zero;
+    }
   return changed_;
 }
 
@@ -321,9 +335,10 @@ void Simulator::end_soon_after_fall() {
 }
 
 void Simulator::move(long step, const VectorXd& target) {
+  const VectorXd& encoders = sent(target);
   for (int i = 0; i < options_.substeps; ++i) {
     if (i > 0) schedule_.fill(step + i, plant_.data(), input_);
-    report_ = plant_.step(target, input_, h_);
+    report_ = plant_.step(encoders, input_, h_);
     work_ += report_.work;
   }
 }

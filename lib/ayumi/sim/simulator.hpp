@@ -77,6 +77,7 @@ class Simulator {
   void step_once();
   void step_for_verdict(bool last);
   const Measurement& measure(long step);
+  const Eigen::VectorXd& sent(const Eigen::VectorXd& target);
   void move(long step, const Eigen::VectorXd& target);
   void check_finite(double t) const;
   void end_soon_after_fall();
@@ -109,7 +110,9 @@ class Simulator {
   ControlOutput changed_;  // output of the law with the targets of the caller, or with whole counts
   bool counts_targets_;    // servos receive whole counts of their encoders
   Eigen::VectorXd counts_;  // counts per rad, for counts_targets_; 0 if they are unknown
-  Measurement corrected_;   // readings minus encoder_offset_
+  Eigen::VectorXd zeros_;   // zeros of the encoders that the law knows; empty if all are 0
+  Eigen::VectorXd sent_;    // targets as encoder angles
+  Measurement corrected_;   // readings as joint angles, minus encoder_offset_
   // Offsets that were estimated while the robot stands [rad, m]; empty if none was found.
   Eigen::VectorXd encoder_offset_;
   CommandSample plan_;  // plan of the last tick that is done

@@ -6,6 +6,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/control/torque_feedforward.hpp"
+#include "ayumi/model/encoder_angles.hpp"
 #include "ayumi/motion/servo_feedforward.hpp"
 #include "ayumi/sim/reference_row.hpp"
 #include "ayumi/sim/simulate.hpp"
@@ -58,7 +59,8 @@ TableServo table_servo(const RobotModel& model, const std::string& profile, Serv
   return {name_of(content), limits.name,
           list_of(limits, [](const ServoDescription& servo) { return servo.delay; }),
           list_of(limits,
-                  [](const ServoDescription& servo) { return servo.kp > 0 ? servo.lag() : 0.0; })};
+                  [](const ServoDescription& servo) { return servo.kp > 0 ? servo.lag() : 0.0; }),
+          encoder_zeros(limits)};
 }
 
 ReferenceTrajectory table_of_series(const RobotModel& model, const std::string& profile,

@@ -11,6 +11,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/degrees.hpp"
 #include "ayumi/io/table/comma_cells.hpp"
+#include "ayumi/model/encoder_angles.hpp"
 
 namespace ayumi {
 
@@ -275,8 +276,7 @@ int interval_of(double dt) {
 
 Eigen::MatrixXi counts_of(const RobotModel& model, const ReferenceTrajectory& table,
                           const SafetyOptions& options) {
-  const Eigen::MatrixXi counts =
-      encoder_counts(model, table, count_step_limits(model, table.dt, options));
+  const Eigen::MatrixXi counts = encoder_counts(model, table, options);
   if (counts.cwiseAbs().maxCoeff() > 32767)
     fail(ErrorCode::bad_pattern,
          "a joint angle needs more than 32767 encoder counts, the largest number of the format; "
@@ -353,23 +353,29 @@ double angle_of_unit(const HoapFile& sequence, const Dof& dof) {
   return kRadiansPerDegree / per_degree;
 }
 
-ReferenceTrajectory hoap_targets(const RobotModel& model, const HoapFile& sequence) {
+Eigen::MatrixXd hoap_readings(const RobotModel& model, const HoapFile& sequence) {
+  const Eigen::Index count =
+      (sequence.rows.back().at - sequence.rows.front().at) / sequence.tick_ms + 1;
+  Eigen::MatrixXd readings = model.posture().transpose().replicate(count, 1);
+  for (int j = 0; j < model.dof_count(); ++j) {
+    const Dof& dof = model.dofs()[static_cast<size_t>(j)];
+    if (dof.encoder.device < 1 || dof.encoder.device > sequence.layout.motors) continue;
+    readings.col(j) = values_on_ticks(sequence, dof.encoder.device) * angle_of_unit(sequence, dof);
+  }
+  return readings;
+}
+
+ReferenceTrajectory hoap_targets(const RobotModel& model, const HoapFile& sequence,
+                                 const std::string& profile) {
   ReferenceTrajectory table;
   table.dt = sequence.dt();
   table.joints = model.dof_names();
   table.provenance.robot = model.name();
-  const Eigen::Index count =
-      (sequence.rows.back().at - sequence.rows.front().at) / sequence.tick_ms + 1;
-  table.rows.resize(static_cast<size_t>(count));
-  for (ReferenceRow& row : table.rows) row.theta = model.posture();
-  for (int j = 0; j < model.dof_count(); ++j) {
-    const Dof& dof = model.dofs()[static_cast<size_t>(j)];
-    if (dof.encoder.device < 1 || dof.encoder.device > sequence.layout.motors) continue;
-    const Eigen::VectorXd angles =
-        values_on_ticks(sequence, dof.encoder.device) * angle_of_unit(sequence, dof);
-    for (Eigen::Index k = 0; k < count; ++k)
-      table.rows[static_cast<size_t>(k)].theta[j] = angles[k];
-  }
+  table.servo.zeros = encoder_zeros(model.limits(profile));
+  const Eigen::MatrixXd theta = joint_rows(hoap_readings(model, sequence), table.servo.zeros);
+  table.rows.resize(static_cast<size_t>(theta.rows()));
+  for (Eigen::Index k = 0; k < theta.rows(); ++k)
+    table.rows[static_cast<size_t>(k)].theta = theta.row(k).transpose();
   return table;
 }
 

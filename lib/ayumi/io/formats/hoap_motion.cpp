@@ -134,7 +134,6 @@ MotionFile read_hoap_motion(const MotionInput& source) {
   const std::string &file = source.file, bytes = plain_table_text(source.bytes, file);
   const HoapFile sequence = parse_hoap(bytes, file, model);
   refuse_zeros(sequence, file);
-  const ReferenceTrajectory targets = hoap_targets(model, sequence);
   MotionFile motion;
   motion.file_rows = static_cast<int>(sequence.rows.size());
   double dt = sequence.dt();
@@ -158,9 +157,7 @@ MotionFile read_hoap_motion(const MotionInput& source) {
         std::to_string(sequence.general_commands) +
         " commands to single devices are ignored, but the time of their rows counts");
   say_largest_step(sequence, motion.notes);
-  Eigen::MatrixXd theta(static_cast<Eigen::Index>(targets.rows.size()), model.dof_count());
-  for (size_t k = 0; k < targets.rows.size(); ++k)
-    theta.row(static_cast<Eigen::Index>(k)) = targets.rows[k].theta.transpose();
+  Eigen::MatrixXd theta = hoap_readings(model, sequence);
   std::vector<char> known(static_cast<size_t>(sequence.layout.motors) + 1, 0);
   std::vector<Eigen::Index> columns;
   for (int j = 0; j < model.dof_count(); ++j) {

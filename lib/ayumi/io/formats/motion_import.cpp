@@ -11,6 +11,7 @@
 #include "ayumi/io/degrees.hpp"
 #include "ayumi/io/formats/motion_formats.hpp"
 #include "ayumi/math/smoothing.hpp"
+#include "ayumi/model/encoder_angles.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/motion/servo_feedforward.hpp"
 
@@ -583,6 +584,15 @@ void take_out_lead(const RobotModel& model, ImportedMotion& imported) {
       "angles are servo targets: the velocity lead, delay + kd/kp, was subtracted");
 }
 
+// Whether the values are angles of the encoders of this robot unit: programs of a robot play and
+// record such angles, and so they are the targets of servos. The reader of a table of this program
+// has already taken the zeros of its head into account.
+bool of_encoders(const MotionFile& read, const ImportOptions& options, const std::string& format) {
+  if (options.sent) return true;
+  const MotionFormat* const known = find_motion_format(format);
+  return !read.commands && (options.commands || format == "hoap" || (known && known->played));
+}
+
 // The robot keeps the last target of a sequence, so a short one can be made longer.
 void hold_last_row(Eigen::Index least, ImportedMotion& imported) {
   Eigen::MatrixXd& theta = imported.motion.theta;
@@ -758,6 +768,8 @@ void read_rows(const std::string& bytes, const std::string& file, const RobotMod
   const Rows rows = rows_of(read, columns, model, options.degrees && assumed);
   set_motion(even_rows(read, rows, options, file, result.format, result.motion.dt, result.filled),
              read, model.dof_count(), result.motion);
+  if (of_encoders(read, options, result.format))
+    result.motion.theta = joint_rows(std::move(result.motion.theta), encoder_zeros(model.limits()));
   if (const std::string unit = assumed_unit(read, model, options.degrees, result.motion);
       !unit.empty())
     result.filled.insert(result.filled.begin() + unit_note, unit);

@@ -7,6 +7,7 @@
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/self_collision.hpp"
 #include "ayumi/math/track.hpp"
+#include "ayumi/model/encoder_angles.hpp"
 
 namespace ayumi {
 
@@ -77,13 +78,13 @@ double share_at(double t) {
 }  // namespace
 
 Eigen::VectorXd sign_test_start(const RobotModel& model) {
-  Eigen::VectorXd start = Eigen::VectorXd::Zero(model.dof_count());
+  Eigen::VectorXd start = encoder_zeros(model.limits());  // here, the encoders read 0
   for (int j = 0; j < model.dof_count(); ++j) {
     const Dof& dof = model.dofs()[static_cast<size_t>(j)];
     if (!dof.limited) continue;
     const double margin = margin_of(model, dof), lower = dof.lower + margin,
                  upper = dof.upper - margin;
-    start[j] = lower > upper ? 0.5 * (lower + upper) : std::clamp(0.0, lower, upper);
+    start[j] = lower > upper ? 0.5 * (lower + upper) : std::clamp(start[j], lower, upper);
   }
   const std::string overlap = overlapping(model, CollisionModel(model), start);
   if (!overlap.empty())

@@ -11,6 +11,7 @@
 #include "ayumi/io/table/csv_dialect.hpp"
 #include "ayumi/io/table/root_columns.hpp"
 #include "ayumi/io/table/table_columns.hpp"
+#include "ayumi/model/encoder_angles.hpp"
 
 namespace ayumi {
 
@@ -162,6 +163,8 @@ MotionFile read_number_motion(const MotionInput& source, NumberTable table) {
   motion.values.resize(table.values.rows(), static_cast<Eigen::Index>(layout.theta.size()));
   for (size_t j = 0; j < layout.theta.size(); ++j)
     motion.values.col(static_cast<Eigen::Index>(j)) = table.values.col(layout.theta[j]);
+  if (!source.options.sent)
+    motion.values = joint_rows(std::move(motion.values), zeros_of(table, layout, file));
   motion.base = bases_of(table, layout, file);
   motion.cog = vectors_of(table, layout.cog);
   motion.zmp = vectors_of(table, layout.zmp);

@@ -23,12 +23,13 @@ constexpr double kWritableOffset = 0.5;
 // stiffness is not determined, the lower end of its interval is written; if there is no such end,
 // the robot keeps its own stiffness. If the recording shows no damping, the whole lag is written as
 // damping and not as delay, because a servo without any damping would let the joint oscillate. The
-// offset is the joint's own: the difference between its angle and its command without load.
+// offset is the joint's own: the difference between its angle and its command without load is added
+// to the one that was known, so that the next table compensates for both.
 OrderedJson servo_group(const IdentifiedJoint& joint, const IdentifiedJoint& source,
                         const ServoDescription& own) {
   OrderedJson group = {{"joints", {joint.joint}}};
-  if (std::abs(joint.offset.value) <= kWritableOffset)
-    group["offset"] = sidecar_number(joint.offset.value);
+  const double offset = own.offset + joint.offset.value;
+  if (std::abs(offset) <= kWritableOffset) group["offset"] = sidecar_number(offset);
   if (!source.moved) return group;
   const bool has_kp = source.kp.known || source.kp.lower > 0;
   const double kp = source.kp.known ? source.kp.value : has_kp ? source.kp.lower : own.kp;

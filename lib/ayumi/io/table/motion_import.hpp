@@ -16,6 +16,9 @@ struct ImportOptions {
   bool degrees = false;   ///< unit of angles if the format does not define it
   double rate = 0;        ///< rate of rows without times [1/s]
   bool commands = false;  ///< angles are servo targets, as in Ayumi's reference tables
+  /// The values are sent to this robot as they are, so they are angles of its own encoders,
+  /// whatever robot the head of a table was made for.
+  bool sent = false;
   /// Rows of radians have the signs of the encoders and not of the joints.
   bool encoder_signs = true;
   /// Largest change of an angle [deg]. If there is no value, it is 0.1 for counts and 0 for angles.

@@ -15,6 +15,7 @@
 #include "ayumi/io/table/comma_cells.hpp"
 #include "ayumi/io/table/csv_dialect.hpp"
 #include "ayumi/io/table/table_columns.hpp"
+#include "ayumi/model/encoder_angles.hpp"
 
 namespace ayumi {
 
@@ -490,7 +491,9 @@ bool is_bare_table(const std::string& bytes) {
   return cells.size() > 1 && number_of(cells[0]).has_value();
 }
 
-AngleTable read_angles(const std::string& bytes, const std::string& file, const RobotModel& model,
+namespace {
+
+AngleTable readings_of(const std::string& bytes, const std::string& file, const RobotModel& model,
                        const RecordingOptions& options) {
   if (trimmed(bytes).empty()) complain(file, "the file is empty");
   require_one_line_end(bytes, file);
@@ -522,6 +525,16 @@ AngleTable read_angles(const std::string& bytes, const std::string& file, const 
                      ", but the robot '" + model.name() + "' has " + std::to_string(devices) +
                      " devices; is this a recording of another robot?");
   return angles_of(rows, model, file, 0, options.rate > 0 ? 1 / options.rate : 0.001);
+}
+
+}  // namespace
+
+AngleTable read_angles(const std::string& bytes, const std::string& file, const RobotModel& model,
+                       const RecordingOptions& options) {
+  AngleTable table = readings_of(bytes, file, model, options);
+  if (!options.at_joints)
+    table.theta = joint_rows(std::move(table.theta), encoder_zeros(model.limits()));
+  return table;
 }
 
 bool holds_sensors(const std::string& bytes, const std::string& file, const RobotModel& model) {

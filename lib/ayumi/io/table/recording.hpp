@@ -12,15 +12,19 @@ namespace ayumi {
 struct RecordingOptions {
   bool degrees = false;  ///< the unit of joint columns whose names have none
   double rate = 0;       ///< rows per second if the file has no times [1/s]; 0 for 1000
+  /// The angles were measured at the joints, by instruments that do not share the zeros of the
+  /// encoders. Otherwise they are readings of the encoders (model/encoder_angles).
+  bool at_joints = false;
 };
 
-/// Reads joint angles: a HOAP sequence (interval, 2, counts, ...), rows of counts (one column for
-/// each device, further columns are 0), or a table with a head row: t[s] or time[s], and joints as
-/// theta.<joint>[rad], <joint>, <joint>[rad], <joint>[deg] or <joint>[counts]; other columns are
-/// ignored. Throws Error(bad_file) "file:line: ..." or "file: column '...': ..." for a text that is
-/// not such a table, line ends of two kinds, values that are not numbers, gaps in time, jumps that
-/// no motor makes (missing samples, counters that wrap), angles in another unit, a device that
-/// moves but has no joint, and a table in which all values are zero.
+/// Reads the angles of the joints of this robot unit from a HOAP sequence (interval, 2, counts,
+/// ...), rows of counts (one column for each device, further columns are 0), or a table with a head
+/// row: t[s] or time[s], and joints as theta.<joint>[rad], <joint>, <joint>[rad], <joint>[deg] or
+/// <joint>[counts]; other columns are ignored. Throws Error(bad_file) "file:line: ..." or "file:
+/// column '...': ..." for a text that is not such a table, line ends of two kinds, values that are
+/// not numbers, gaps in time, jumps that no motor makes (missing samples, counters that wrap),
+/// angles in another unit, a device that moves but has no joint, and a table in which all values
+/// are zero.
 AngleTable read_angles(const std::string& bytes, const std::string& file, const RobotModel& model,
                        const RecordingOptions& options = {});
 

@@ -11,6 +11,7 @@
 #include "ayumi/io/json/json_reader.hpp"
 #include "ayumi/io/run/sha256.hpp"
 #include "ayumi/io/table/table_columns.hpp"
+#include "ayumi/model/encoder_angles.hpp"
 #include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
@@ -51,7 +52,8 @@ std::vector<double> cells_of(const ReferenceTrajectory& reference, size_t k) {
   require(row.theta.size() == static_cast<Eigen::Index>(reference.joints.size()),
           "a reference row has another number of joints than the table");
   std::vector<double> cells = {static_cast<double>(k) * reference.dt};
-  cells.insert(cells.end(), row.theta.begin(), row.theta.end());
+  const Eigen::VectorXd targets = encoder_angles(row.theta, reference.servo.zeros);
+  cells.insert(cells.end(), targets.begin(), targets.end());
   add(cells, row.cog);
   add(cells, row.zmp);
   cells.push_back(row.fz);
@@ -107,13 +109,19 @@ HeaderLines provenance_lines(const Provenance& p) {
           {"command_line", p.command_line}};
 }
 
-// The servo for which the table was made, if it is known.
+// The servo for which the table was made, if it is known, and the zeros of the encoders.
 HeaderLines servo_lines(const TableServo& servo) {
-  if (servo.content.empty()) return {};
-  return {{"servo", servo.content},
-          {"servo_profile", servo.profile},
-          {"servo_delay", servo.delay},
-          {"servo_lag", servo.lag}};
+  HeaderLines lines;
+  if (!servo.content.empty())
+    lines = {{"servo", servo.content},
+             {"servo_profile", servo.profile},
+             {"servo_delay", servo.delay},
+             {"servo_lag", servo.lag}};
+  if (servo.zeros.isZero(0)) return lines;
+  std::vector<std::string> zeros;
+  for (const double zero : servo.zeros) zeros.push_back(text::exact(zero));
+  lines.emplace_back("servo_offset", text::join(zeros, " "));
+  return lines;
 }
 
 // What a person has to know before a robot receives the table; most tables have no such caution.
@@ -140,7 +148,7 @@ TableServo servo_of(const std::map<std::string, std::string>& header) {
     const auto found = header.find(key);
     return found == header.end() ? std::string() : read_header_value(found->second);
   };
-  return {value("servo"), value("servo_profile"), value("servo_delay"), value("servo_lag")};
+  return {value("servo"), value("servo_profile"), value("servo_delay"), value("servo_lag"), {}};
 }
 
 void require_format(const NumberTable& table, const char* format, const std::string& file) {
@@ -243,9 +251,11 @@ ReferenceTrajectory parse_reference(const std::string& bytes, const std::string&
   reference.joints = layout.joints;
   reference.provenance = provenance_of(table.header);
   reference.servo = servo_of(table.header);
+  const Eigen::VectorXd zeros = zeros_of(table, layout, file);
+  reference.servo.zeros = zeros;
   for (Eigen::Index k = 0; k < table.values.rows(); ++k) {
     ReferenceRow row;
-    row.theta = theta_of(table, k, layout.theta);
+    row.theta = joint_angles(theta_of(table, k, layout.theta), zeros);
     row.base = base_of(table, layout, k, file);
     row.cog = vector_of(table, k, layout.cog);
     row.zmp = vector_of(table, k, layout.zmp);
@@ -316,9 +326,10 @@ DenseTable read_dense_table(const std::filesystem::path& path) {
     fail(ErrorCode::bad_file, {file},
          "the table lasts " + text::exact(static_cast<double>(rows) * dense.dt) +
              " s, but Ayumi reads at most 3600 s");
+  const Eigen::VectorXd zeros = zeros_of(table, layout, file);
   dense.theta.resize(rows, static_cast<Eigen::Index>(layout.joints.size()));
   for (Eigen::Index k = 0; k < rows; ++k) {
-    dense.theta.row(k) = theta_of(table, k, layout.theta).transpose();
+    dense.theta.row(k) = joint_angles(theta_of(table, k, layout.theta), zeros).transpose();
     if (!layout.base.empty()) dense.base.push_back(base_of(table, layout, k, file));
     if (!layout.cog.empty()) dense.cog.push_back(vector_of(table, k, layout.cog));
     if (!layout.zmp.empty()) dense.zmp.push_back(vector_of(table, k, layout.zmp));

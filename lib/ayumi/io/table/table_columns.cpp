@@ -4,6 +4,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <sstream>
 
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/file.hpp"
@@ -197,6 +198,22 @@ std::string read_header_value(const std::string& text) {
   if (text.empty() || text.front() != '"') return text;
   const Json value = Json::parse(text, nullptr, false);
   return value.is_string() ? value.get<std::string>() : text;
+}
+
+Eigen::VectorXd zeros_of(const NumberTable& table, const TableLayout& layout,
+                         const std::string& file) {
+  const auto found = table.header.find("servo_offset");
+  if (found == table.header.end()) return {};
+  std::istringstream words(read_header_value(found->second));
+  std::vector<double> zeros;
+  for (double zero; words >> zero;) zeros.push_back(zero);
+  const size_t joints = layout.joints.size();
+  if (!words.eof() || zeros.size() != joints)
+    fail(ErrorCode::bad_file, {file},
+         "servo_offset in the head has to be " + std::to_string(joints) +
+             " numbers, one for each joint [rad], but it is '" + found->second +
+             "'; export the table again");
+  return Eigen::Map<const Eigen::VectorXd>(zeros.data(), static_cast<Eigen::Index>(joints));
 }
 
 TableCaution caution_of(const NumberTable& table) {

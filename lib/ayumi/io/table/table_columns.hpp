@@ -56,6 +56,12 @@ bool holds_commands(const NumberTable& table);
 /// The text of a header line. It is quoted as in JSON if it is not plain text.
 std::string read_header_value(const std::string& text);
 
+/// The zeros of the encoders that the head states (`servo_offset`), one for each joint of the
+/// layout [rad, m]; empty if it states none. The angle of a joint is the value in the table plus
+/// its zero (model/encoder_angles). Throws Error(bad_file) if there is another number of zeros.
+Eigen::VectorXd zeros_of(const NumberTable& table, const TableLayout& layout,
+                         const std::string& file);
+
 /// The caution in the header about the run from which the table comes ("disturbances", "unfit").
 TableCaution caution_of(const NumberTable& table);
 

@@ -1,0 +1,25 @@
+#pragma once
+// Finds joints whose measured angles stand in each other's columns.
+
+#include <string>
+#include <vector>
+
+#include "ayumi/identify/recorded_motion.hpp"
+#include "ayumi/model/robot_model.hpp"
+
+namespace ayumi {
+
+/// Groups of joints whose measured angles are exchanged: the measured angle of each joint follows
+/// the command of the next one in the group (the last one follows the first) far better than its
+/// own command. Of two joints with nearly the same command, an exchange cannot be seen. `measured`
+/// is behind `command` by some time between `soonest` and `latest` [s]; only times of the command
+/// from `begin` to `end` count.
+std::vector<std::vector<Eigen::Index>> exchanged_joints(const RobotModel& model,
+                                                        const AngleTable& command,
+                                                        const AngleTable& measured, double soonest,
+                                                        double latest, double begin, double end);
+
+/// The group in words: one line.
+std::string exchange_words(const RobotModel& model, const std::vector<Eigen::Index>& group);
+
+}  // namespace ayumi

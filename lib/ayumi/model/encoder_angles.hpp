@@ -1,0 +1,25 @@
+#pragma once
+// The border between Ayumi and one robot unit. Inside, every angle is the angle of a joint. A robot
+// receives, and reports, the angles that its encoders read. Every table and recording of a robot
+// passes this border, and so do the targets and the readings of a simulated robot.
+
+#include <Eigen/Core>
+
+#include "ayumi/model/robot_model.hpp"
+
+namespace ayumi {
+
+/// The zeros of the encoders of this unit: the angle at which each joint stands while its encoder
+/// reads 0 [rad, m], by dof.
+Eigen::VectorXd encoder_zeros(const ActuatorLimits& actuators);
+
+/// The angles that the encoders read while the joints have these angles, and the reverse. If there
+/// are no zeros, or all are 0, both are the same, to the bit.
+Eigen::VectorXd encoder_angles(const Eigen::VectorXd& joints, const Eigen::VectorXd& zeros);
+Eigen::VectorXd joint_angles(const Eigen::VectorXd& encoders, const Eigen::VectorXd& zeros);
+
+/// The same for tables with one row for each time.
+Eigen::MatrixXd encoder_rows(Eigen::MatrixXd joints, const Eigen::VectorXd& zeros);
+Eigen::MatrixXd joint_rows(Eigen::MatrixXd encoders, const Eigen::VectorXd& zeros);
+
+}  // namespace ayumi
