@@ -113,6 +113,19 @@ TEST(Hoap, SaysWhatIsWrong) {
             std::string::npos);
 }
 
+// A robot without encoders in its file has no sequences, whatever the number of columns.
+TEST(Hoap, ARobotWithoutMotorNumbersIsNamed) {
+  RobotDescription description = test::bus_description();
+  description.encoders.clear();
+  description.layouts.clear();
+  const std::string error = test::error_message(
+      [&] { parse_hoap("1,2,0,0,0,R,R,R\n", "s.csv", RobotModel(description)); });
+  EXPECT_NE(error.find("s.csv:1: the columns are counts of motors, but the file of this robot "
+                       "states no motor numbers"),
+            std::string::npos)
+      << error;
+}
+
 TEST(Hoap, NeedsEncodersAndWholeMilliseconds) {
   RobotDescription description = test::bus_description();
   description.encoders["c"].device = 1;

@@ -132,6 +132,11 @@ class Reader {
         result_.layout = layout;
         return;
       }
+    if (std::all_of(layouts_.begin(), layouts_.end(),
+                    [](const SequenceLayout& layout) { return layout.motors == 0; }))
+      stop(
+          "the columns are counts of motors, but the file of this robot states no motor numbers; "
+          "state \"encoders\" in its sidecar, or name another robot");
     stop("the row has " + std::to_string(columns) + " columns, but " +
          (with_interval ? "sequences" : "rows without an interval") + " of this robot have " +
          list_of(layouts_, with_interval) +
