@@ -36,11 +36,23 @@ bool choose_profile(const Context& context, Task& task) {
 
 }  // namespace
 
-bool write_new_pattern(const Context& context, const RobotModel& model, Pattern pattern,
-                       const std::string& robot, const std::string& out,
-                       const std::vector<std::string>& comments) {
+void add_new_file(Command& command, NewFile& file) {
+  command
+      .add_option("--robot", file.robot,
+                  "Name of a bundled robot, or a folder, sidecar or robot file (URDF, MJCF, SDF, "
+                  "Choreonoid body, mi-lib ztk).")
+      ->type_name("ROBOT")
+      ->capture_default_str();
+  command.add_option("-o,--out", file.out, "Pattern file to write.")->type_name("F")->required();
+  command.add_flag("--allow-inconsistent", file.allow_inconsistent,
+                   "Write the pattern even if the check finds errors, for example to repair it.");
+}
+
+bool write_new_pattern(Context& context, const RobotModel& model, Pattern pattern,
+                       const NewFile& file, const std::vector<std::string>& comments) {
+  const std::string& out = file.out;
   refuse_overwriting(context, out);
-  pattern.robot = robot_as_written(robot);
+  pattern.robot = robot_as_written(file.robot);
   pattern.name = std::filesystem::path(out).stem().string();
   pattern.file.clear();  // places in messages are not yet those of a file
   Task task = [&] {
@@ -54,8 +66,15 @@ bool write_new_pattern(const Context& context, const RobotModel& model, Pattern 
     }
   }();
   const CommandSeries& series = task.series;
-  const bool consistent =
-      !series.viip.empty() || !model.has_soles() || choose_profile(context, task);
+  const bool consistent = !model.has_soles() || choose_profile(context, task);
+  if (!consistent && !file.allow_inconsistent) {
+    context.print(
+        "nothing is written. With --allow-inconsistent, the pattern is written nevertheless, for "
+        "example for `ayumi repair`\n");
+    context.print_json("{\"pattern\": null}");
+    context.exit_code = 1;
+    return false;
+  }
   Pattern& written = task.pattern;
   written.file = "new";  // names are relative to the working folder
   write_pattern(out, written, comments);

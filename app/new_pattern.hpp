@@ -5,11 +5,20 @@
 
 namespace ayumi::app {
 
-/// Samples the motion, and then writes it as `out`, so that no unusable file is made. Returns
-/// whether the check finds the pattern consistent, and prints its findings.
-bool write_new_pattern(const Context& context, const RobotModel& model, Pattern pattern,
-                       const std::string& robot, const std::string& out,
-                       const std::vector<std::string>& comments);
+/// The options that all generators share.
+struct NewFile {
+  std::string robot = "hoap1", out;
+  bool allow_inconsistent = false;  ///< whether a pattern with errors is written
+};
+
+/// Adds --robot, --out and --allow-inconsistent.
+void add_new_file(Command& command, NewFile& file);
+
+/// Samples and checks the motion, and then writes it, so that no unusable file is made. If the
+/// check finds errors, prints them, writes nothing and sets the exit code 1, unless the user allows
+/// an inconsistent pattern. Returns whether the check finds the pattern consistent.
+bool write_new_pattern(Context& context, const RobotModel& model, Pattern pattern,
+                       const NewFile& file, const std::vector<std::string>& comments);
 
 /// The subcommand `jump` of `ayumi new`.
 void add_new_jump(Command& command, Context& context);

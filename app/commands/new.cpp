@@ -31,7 +31,7 @@ namespace ayumi::app {
 namespace {
 
 struct NewOptions {
-  std::string robot = "hoap1", out;
+  NewFile file;
   WalkParameters walk;
   SwayParameters sway;
   SquatParameters squat;
@@ -62,22 +62,6 @@ struct NewOptions {
   std::string which = "right";  // hand or foot
   double rise = 0;
 };
-
-bool write_new(const Context& context, const RobotModel& model, Pattern pattern,
-               const NewOptions& options, const std::vector<std::string>& comments) {
-  return write_new_pattern(context, model, std::move(pattern), options.robot, options.out,
-                           comments);
-}
-
-void add_common(Command& command, NewOptions& options) {
-  command
-      .add_option("--robot", options.robot,
-                  "Name of a bundled robot, or a folder, sidecar or robot file (URDF, MJCF, SDF, "
-                  "Choreonoid body, mi-lib ztk).")
-      ->type_name("ROBOT")
-      ->capture_default_str();
-  command.add_option("-o,--out", options.out, "Pattern file to write.")->type_name("F")->required();
-}
 
 double rounded(double value, double unit) { return unit * std::round(value / unit); }
 
@@ -294,8 +278,8 @@ std::string what_it_can_do(const RobotModel& model, const std::string& robot) {
                    text::join(commands, ", ");
 }
 
-void new_walk(const Context& context, NewOptions options) {
-  const RobotModel model = load_robot(options.robot, robot_search(context));
+void new_walk(Context& context, NewOptions options) {
+  const RobotModel model = load_robot(options.file.robot, robot_search(context));
   const bool climbs = options.rise != 0;
   const WalkParameters scaled = climbs ? stair_defaults(model, options.rise) : walk_defaults(model);
   WalkParameters& w = options.walk;
@@ -314,18 +298,18 @@ void new_walk(const Context& context, NewOptions options) {
       "The pattern has no keys of the COG. Ayumi computes the COG from the ZMP keys with the full "
       "model of the robot."};
   try {
-    if (write_new(context, model, walk_pattern(model, w), options, comments)) return;
+    if (write_new_pattern(context, model, walk_pattern(model, w), options.file, comments)) return;
   } catch (const Error& error) {
     const std::string fits = error.code() == ErrorCode::bad_pattern ? what_fits(model, w) : "";
     if (error.code() != ErrorCode::bad_pattern) throw;
-    throw_with_more(error, fits.empty() ? what_it_can_do(model, options.robot) : "; " + fits);
+    throw_with_more(error, fits.empty() ? what_it_can_do(model, options.file.robot) : "; " + fits);
   }
   const std::string fits = what_fits(model, w);
   if (!fits.empty()) context.print("  " + fits + "\n");
 }
 
-void new_step(const Context& context, NewOptions options) {
-  const RobotModel model = load_robot(options.robot, robot_search(context));
+void new_step(Context& context, NewOptions options) {
+  const RobotModel model = load_robot(options.file.robot, robot_search(context));
   const WalkParameters scaled = walk_defaults(model);
   WalkParameters& w = options.walk;
   w.stride = options.stride.value_or(0);
@@ -335,16 +319,16 @@ void new_step(const Context& context, NewOptions options) {
   fit_walk(context, model, options, w);
   const std::string where =
       w.stride == 0 ? "in place" : "of " + text::brief(w.stride) + " m forward";
-  write_new(
-      context, model, walk_pattern(model, w), options,
+  write_new_pattern(
+      context, model, walk_pattern(model, w), options.file,
       {std::to_string(w.steps) + (w.steps == 1 ? " step " : " steps ") + where +
            ", and one more step that brings the feet together. Period " + text::brief(w.period) +
            " s, lift " + text::brief(w.lift) + " m",
        "For a longer step, change \"to\" of the swings. The COG is solved from the ZMP keys."});
 }
 
-void new_sway(const Context& context, NewOptions options) {
-  const RobotModel model = load_robot(options.robot, robot_search(context));
+void new_sway(Context& context, NewOptions options) {
+  const RobotModel model = load_robot(options.file.robot, robot_search(context));
   const SwayParameters scaled = sway_defaults(model);
   SwayParameters& p = options.sway;
   p.side = options.side.value_or(p.forward != 0 ? 0 : scaled.side);
@@ -363,15 +347,15 @@ void new_sway(const Context& context, NewOptions options) {
   p = with(values_that_pass(context, model, dials, [&](const std::vector<double>& values) {
     return sway_pattern(model, with(values));
   }));
-  write_new(
-      context, model, sway_pattern(model, p), options,
+  write_new_pattern(
+      context, model, sway_pattern(model, p), options.file,
       {"The COG sways " + std::to_string(p.cycles) + " times, " + text::brief(p.side) +
            " m to either side and " + text::brief(p.forward) + " m ahead and back, over both feet.",
        "The COG is at rest at every key; the ZMP is computed from the motion of the whole robot."});
 }
 
-void new_squat(const Context& context, NewOptions options) {
-  const RobotModel model = load_robot(options.robot, robot_search(context));
+void new_squat(Context& context, NewOptions options) {
+  const RobotModel model = load_robot(options.file.robot, robot_search(context));
   const SquatParameters scaled = squat_defaults(model);
   SquatParameters& p = options.squat;
   p.depth = options.depth.value_or(scaled.depth);
@@ -391,15 +375,16 @@ void new_squat(const Context& context, NewOptions options) {
   p = with(values_that_pass(context, model, dials, [&](const std::vector<double>& values) {
     return squat_pattern(model, with(values));
   }));
-  write_new(context, model, squat_pattern(model, p), options,
-            {"Squats " + std::to_string(p.cycles) + " times by " + text::brief(p.depth) +
-                 " m. The keys give the COG height.",
-             "The horizontal position of the COG is solved so that the ZMP stays in the middle of "
-             "the feet."});
+  write_new_pattern(
+      context, model, squat_pattern(model, p), options.file,
+      {"Squats " + std::to_string(p.cycles) + " times by " + text::brief(p.depth) +
+           " m. The keys give the COG height.",
+       "The horizontal position of the COG is solved so that the ZMP stays in the middle of "
+       "the feet."});
 }
 
-void new_seat(const Context& context, NewOptions options, bool down) {
-  const RobotModel model = load_robot(options.robot, robot_search(context));
+void new_seat(Context& context, NewOptions options, bool down) {
+  const RobotModel model = load_robot(options.file.robot, robot_search(context));
   const SeatParameters scaled = seat_defaults(model);
   SeatParameters& p = options.seat;
   p.depth = options.depth.value_or(scaled.depth);
@@ -416,14 +401,15 @@ void new_seat(const Context& context, NewOptions options, bool down) {
     return down ? sit_pattern(model, p) : rise_pattern(model, p);
   };
   const Pattern pattern = make(values_that_pass(context, model, dials, make));
-  write_new(context, model, pattern, options,
-            {std::string(down ? "Goes down by " : "Comes up by ") + text::brief(p.depth) +
-                 " m, with the trunk leaning forward in the middle of the motion.",
-             "There is no seat in the world of the pattern: the feet alone carry the robot."});
+  write_new_pattern(
+      context, model, pattern, options.file,
+      {std::string(down ? "Goes down by " : "Comes up by ") + text::brief(p.depth) +
+           " m, with the trunk leaning forward in the middle of the motion.",
+       "There is no seat in the world of the pattern: the feet alone carry the robot."});
 }
 
-void new_bow(const Context& context, NewOptions options) {
-  const RobotModel model = load_robot(options.robot, robot_search(context));
+void new_bow(Context& context, NewOptions options) {
+  const RobotModel model = load_robot(options.file.robot, robot_search(context));
   const BowParameters scaled = bow_defaults(model);
   BowParameters& p = options.bow;
   p.period = options.period.value_or(scaled.period);
@@ -441,15 +427,16 @@ void new_bow(const Context& context, NewOptions options) {
     return bow_pattern(model, p);
   };
   const Pattern pattern = make(values_that_pass(context, model, dials, make));
-  write_new(context, model, pattern, options,
-            {"Bows by " + text::brief(p.angle / degree) +
-                 " deg. The keys give the attitude of the trunk and the COG height.",
-             "The horizontal position of the COG is solved so that the ZMP stays in the middle of "
-             "the feet."});
+  write_new_pattern(
+      context, model, pattern, options.file,
+      {"Bows by " + text::brief(p.angle / degree) +
+           " deg. The keys give the attitude of the trunk and the COG height.",
+       "The horizontal position of the COG is solved so that the ZMP stays in the middle of "
+       "the feet."});
 }
 
-void new_wave(const Context& context, NewOptions options) {
-  const RobotModel model = load_robot(options.robot, robot_search(context));
+void new_wave(Context& context, NewOptions options) {
+  const RobotModel model = load_robot(options.file.robot, robot_search(context));
   WaveParameters& p = options.wave;
   p.side = options.which == "left" ? Side::left : Side::right;
   p.period = options.period.value_or(wave_defaults(model).period);
@@ -462,14 +449,14 @@ void new_wave(const Context& context, NewOptions options) {
     return wave_pattern(model, p);
   };
   const Pattern pattern = make(values_that_pass(context, model, dials, make));
-  write_new(context, model, pattern, options,
-            {"Waves the " + options.which + " hand " + std::to_string(p.cycles) +
-                 " times. The keys give the joints of the arm.",
-             "The COG is solved so that the ZMP stays in the middle of the feet."});
+  write_new_pattern(context, model, pattern, options.file,
+                    {"Waves the " + options.which + " hand " + std::to_string(p.cycles) +
+                         " times. The keys give the joints of the arm.",
+                     "The COG is solved so that the ZMP stays in the middle of the feet."});
 }
 
-void new_kick(const Context& context, NewOptions options) {
-  const RobotModel model = load_robot(options.robot, robot_search(context));
+void new_kick(Context& context, NewOptions options) {
+  const RobotModel model = load_robot(options.file.robot, robot_search(context));
   const KickParameters scaled = kick_defaults(model);
   KickParameters& p = options.kick;
   p.side = options.which == "left" ? Side::left : Side::right;
@@ -489,18 +476,18 @@ void new_kick(const Context& context, NewOptions options) {
     return kick_pattern(model, p);
   };
   const Pattern pattern = make(values_that_pass(context, model, dials, make));
-  write_new(context, model, pattern, options,
-            {"Kicks " + text::brief(p.length) + " m ahead with the " + options.which +
-                 " foot. This foot has keys while it is free.",
-             "Ayumi computes the COG from the ZMP keys with the full model of the robot."});
+  write_new_pattern(context, model, pattern, options.file,
+                    {"Kicks " + text::brief(p.length) + " m ahead with the " + options.which +
+                         " foot. This foot has keys while it is free.",
+                     "Ayumi computes the COG from the ZMP keys with the full model of the robot."});
 }
 
 // Turn per step if only the whole angle is given [deg]. Chosen: the feet of HOAP-1 then stay 5 mm
 // apart.
 constexpr double kTurnPerStep = 10;
 
-void new_turn(const Context& context, NewOptions options) {
-  const RobotModel model = load_robot(options.robot, robot_search(context));
+void new_turn(Context& context, NewOptions options) {
+  const RobotModel model = load_robot(options.file.robot, robot_search(context));
   const WalkParameters scaled = walk_defaults(model);
   const double angle = options.angle_deg.value_or(90);
   if (!(std::abs(angle) >= 1 && std::abs(angle) <= 3600))
@@ -524,16 +511,16 @@ void new_turn(const Context& context, NewOptions options) {
               {dial("--per-step", "deg", most, 1, options.turn_deg == 0, step_shares(model)),
                in_steps_of},
               true);
-  write_new(
-      context, model, walk_pattern(model, w), options,
+  write_new_pattern(
+      context, model, walk_pattern(model, w), options.file,
       {"Turns by " + text::brief(angle) + " deg in place, in " + std::to_string(w.steps) +
            " steps and one more step that brings the feet together.",
        "The pattern has no keys of the COG. Ayumi computes the COG from the ZMP keys with the full "
        "model of the robot."});
 }
 
-void new_march(const Context& context, NewOptions options) {
-  const RobotModel model = load_robot(options.robot, robot_search(context));
+void new_march(Context& context, NewOptions options) {
+  const RobotModel model = load_robot(options.file.robot, robot_search(context));
   const WalkParameters scaled = walk_defaults(model);
   WalkParameters& w = options.walk;
   w.stride = 0;
@@ -543,8 +530,8 @@ void new_march(const Context& context, NewOptions options) {
   w.first_swing = options.first == "left" ? Side::left : Side::right;
   options.stride = 0;
   fit_walk(context, model, options, w, true);
-  write_new(
-      context, model, walk_pattern(model, w), options,
+  write_new_pattern(
+      context, model, walk_pattern(model, w), options.file,
       {"Marches in place with " + std::to_string(w.steps) + " steps. Lift " + text::brief(w.lift) +
            " m, period " + text::brief(w.period) + " s.",
        "The pattern has no keys of the COG. Ayumi computes the COG from the ZMP keys with the full "
@@ -589,8 +576,8 @@ double height_for_steps(const RobotModel& model, Pattern pattern) {
 }
 
 // The robot stands, reaches the goal, and stands.
-void new_viip(const Context& context, const NewOptions& options) {
-  const RobotModel model = load_robot(options.robot, robot_search(context));
+void new_viip(Context& context, const NewOptions& options) {
+  const RobotModel model = load_robot(options.file.robot, robot_search(context));
   const bool steps = options.viip_steps > 0;
   if (steps + !options.cog.empty() + !options.cog_velocity.empty() != 1)
     fail(ErrorCode::usage,
@@ -607,7 +594,7 @@ void new_viip(const Context& context, const NewOptions& options) {
          "viip: the last step brings the feet together, so one step cannot go forward; give "
          "--steps 2 or more");
   Pattern pattern;
-  pattern.robot = options.robot;
+  pattern.robot = options.file.robot;
   pattern.controller.type = ControllerKind::viip;
   for (const std::vector<double>& values :
        {options.cog, options.cog_velocity, options.velocity, {options.turn_deg}})
@@ -652,18 +639,18 @@ void new_viip(const Context& context, const NewOptions& options) {
   const CommandSeries series = sample_at_servo_period(model, pattern);
   require_reachable_goals(model, series, pattern.controller);
   pattern.profile = profile_for(context, model, keyed_goals(model, series, pattern.controller));
-  write_new(context, model, pattern, options, comments);
+  write_new_pattern(context, model, pattern, options.file, comments);
 }
 
-void new_stand(const Context& context, const NewOptions& options) {
-  const RobotModel model = load_robot(options.robot, robot_search(context));
+void new_stand(Context& context, const NewOptions& options) {
+  const RobotModel model = load_robot(options.file.robot, robot_search(context));
   const std::vector<Dial> dials = {height_dial(model, options.stand_height)};
   const auto make = [&](const std::vector<double>& values) {
     return stand_pattern(model, options.duration, values[0]);
   };
   const Pattern pattern = make(values_that_pass(context, model, dials, make));
-  write_new(
-      context, model, pattern, options,
+  write_new_pattern(
+      context, model, pattern, options.file,
       {pattern.cog_height == 0
            ? "The robot stands on both feet in the home posture."
            : "The robot stands on both feet with bent knees, lower than in the home posture."});
@@ -671,8 +658,8 @@ void new_stand(const Context& context, const NewOptions& options) {
 
 // Reduces the amplitudes, and bends the knees of the robot more, until the check finds the pattern
 // consistent.
-void new_excite(const Context& context, const NewOptions& options) {
-  const RobotModel model = load_robot(options.robot, robot_search(context));
+void new_excite(Context& context, const NewOptions& options) {
+  const RobotModel model = load_robot(options.file.robot, robot_search(context));
   const double given = rounded(100 * options.scale, 1e-3);  // the scale as the value of a dial [%]
   const Dial amplitudes =
       dial("amplitudes of", "%", given, 0.1, true, {0.8, 0.64, 0.512, 0.41, 0.328, 0.262});
@@ -684,10 +671,11 @@ void new_excite(const Context& context, const NewOptions& options) {
     return excite_pattern(model, 0.01 * values[1], values[0]);
   };
   const std::vector<double> values = values_that_pass(context, model, {height, amplitudes}, make);
-  write_new(context, model, make(values), options,
-            {"Slow sweeps, chirps and steps of every joint, for `ayumi identify`. Joints of a leg "
-             "are moved while the robot stands on one foot.",
-             "The amplitudes are " + text::brief(values[1], 3) + " % of the usual ones."});
+  write_new_pattern(
+      context, model, make(values), options.file,
+      {"Slow sweeps, chirps and steps of every joint, for `ayumi identify`. Joints of a leg "
+       "are moved while the robot stands on one foot.",
+       "The amplitudes are " + text::brief(values[1], 3) + " % of the usual ones."});
 }
 
 // Adds an option that several generators share.
@@ -745,7 +733,7 @@ void add_walk(Command& command, NewOptions& options) {
   command.footer(
       "Examples:\n  ayumi new walk --steps 10 --stride 0.025 --period 0.6 -o walk.json\n"
       "  ayumi new walk --rise 0.01 --steps 3 -o stairs.json");
-  add_common(command, options);
+  add_new_file(command, options.file);
   add_gait(command, options);
   add_scaled(command, "--stride", options.stride,
              "Distance between successive footholds [m], backwards if negative",
@@ -770,7 +758,7 @@ void add_step(Command& command, NewOptions& options) {
   command.footer(
       "Examples:\n  ayumi new step -o in_place.json\n"
       "  ayumi new step --steps 1 --length 0.03 -o one_step.json");
-  add_common(command, options);
+  add_new_file(command, options.file);
   add_gait(command, options);
   command
       .add_option("--length", options.stride,
@@ -780,7 +768,7 @@ void add_step(Command& command, NewOptions& options) {
 
 void add_sway(Command& command, NewOptions& options) {
   command.footer("Examples:\n  ayumi new sway --side 0 --forward 0.015 --cycles 3 -o sway.json");
-  add_common(command, options);
+  add_new_file(command, options.file);
   add_scaled(command, "--side", options.side, "Largest displacement to either side [m]",
              SwayParameters().side, "M");
   command
@@ -803,7 +791,7 @@ void add_viip(Command& command, NewOptions& options) {
       "  ayumi new viip --steps 8 -o in_place.json\n"
       "  ayumi new viip --steps 14 --velocity 0.1 -o walk.json\n"
       "  ayumi new viip --steps 14 --velocity 0.05,0.01 --turn 15 -o turn.json");
-  add_common(command, options);
+  add_new_file(command, options.file);
   command
       .add_option("--cog", options.cog,
                   "Displacement of the COG while both feet stay in place [m]: forward, left, up.")
@@ -837,7 +825,7 @@ void add_viip(Command& command, NewOptions& options) {
 
 void add_squat(Command& command, NewOptions& options) {
   command.footer("Examples:\n  ayumi new squat --depth 0.04 --hold 1 --cycles 1 -o squat.json");
-  add_common(command, options);
+  add_new_file(command, options.file);
   add_scaled(command, "--depth", options.depth, "How far the COG goes down [m]",
              SquatParameters().depth, "M");
   add_scaled(command, "--period", options.period, "Time of one cycle [s]", SquatParameters().period,
@@ -857,7 +845,7 @@ void add_which(Command& command, const char* name, const char* what, NewOptions&
 }
 
 void add_seat(Command& command, NewOptions& options) {
-  add_common(command, options);
+  add_new_file(command, options.file);
   add_scaled(command, "--depth", options.depth,
              "Difference of the COG height between standing and sitting [m]",
              SeatParameters().depth, "M");
@@ -872,7 +860,7 @@ void add_seat(Command& command, NewOptions& options) {
 
 void add_bow(Command& command, NewOptions& options) {
   command.footer("Examples:\n  ayumi new bow --angle 20 --hold 1 -o bow.json");
-  add_common(command, options);
+  add_new_file(command, options.file);
   command.add_option("--angle", options.angle_deg, "Lean of the trunk [deg] (default: 29).")
       ->type_name("DEG");
   add_scaled(command, "--period", options.period,
@@ -884,7 +872,7 @@ void add_bow(Command& command, NewOptions& options) {
 
 void add_wave(Command& command, NewOptions& options) {
   command.footer("Examples:\n  ayumi new wave --hand left --cycles 5 -o wave.json");
-  add_common(command, options);
+  add_new_file(command, options.file);
   add_which(command, "--hand", "Hand that waves", options);
   command.add_option("--cycles", options.wave.cycles, "Number of waves.")
       ->capture_default_str()
@@ -896,7 +884,7 @@ void add_wave(Command& command, NewOptions& options) {
 
 void add_kick(Command& command, NewOptions& options) {
   command.footer("Examples:\n  ayumi new kick --foot left --length 0.05 -o kick.json");
-  add_common(command, options);
+  add_new_file(command, options.file);
   add_which(command, "--foot", "Foot that kicks", options);
   add_scaled(command, "--length", options.length, "Distance that the foot moves forward [m]",
              KickParameters().length, "M");
@@ -909,7 +897,7 @@ void add_kick(Command& command, NewOptions& options) {
 
 void add_turn(Command& command, NewOptions& options) {
   command.footer("Examples:\n  ayumi new turn --angle -90 -o turn_right.json");
-  add_common(command, options);
+  add_new_file(command, options.file);
   command.add_option("--angle", options.angle_deg, "Turn to the left [deg] (default: 90).")
       ->type_name("DEG");
   command.add_option("--per-step", options.turn_deg, "Largest turn of a step [deg] (default: 10).")
@@ -970,7 +958,7 @@ void add_new(Command& app, Context& context) {
   step->callback([shared, &context] { new_step(context, *shared); });
   Command* march = command->add_subcommand("march", "step in place with high steps");
   march->footer("Examples:\n  ayumi new march --steps 6 --lift 0.03 -o march.json");
-  add_common(*march, options);
+  add_new_file(*march, options.file);
   add_gait(*march, options);
   march->callback([shared, &context] { new_march(context, *shared); });
   Command* turn = command->add_subcommand("turn", "turn in place by an angle");
@@ -1008,7 +996,7 @@ void add_new(Command& app, Context& context) {
   add_new_jump(*command, context);
   Command* stand = command->add_subcommand("stand", "stand on both feet");
   stand->footer("Examples:\n  ayumi new stand --duration 4 -o stand.json");
-  add_common(*stand, options);
+  add_new_file(*stand, options.file);
   add_height(*stand, options.stand_height);
   stand->add_option("--duration", options.duration, "Duration of the pattern [s].")
       ->capture_default_str()
@@ -1018,8 +1006,8 @@ void add_new(Command& app, Context& context) {
       "excite",
       "move every joint in slow sweeps, chirps and steps, to record the robot for identify");
   excite->footer("Examples:\n  ayumi new excite hoap1 -o excite.json");
-  add_common(*excite, options);
-  excite->add_option("ROBOT", options.robot,
+  add_new_file(*excite, options.file);
+  excite->add_option("ROBOT", options.file.robot,
                      "Robot that performs the motion. Instead, --robot can name the robot.");
   excite->add_option("--scale", options.scale, "Factor on the amplitudes of all movements.")
       ->check(number_within(0.05, 2.0))

@@ -8,7 +8,9 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/limits/amount_text.hpp"
+#include "ayumi/limits/limit.hpp"
 #include "ayumi/plan/sample.hpp"
+#include "ayumi/repair/infeasibility_report.hpp"
 #include "ayumi/task/task.hpp"
 #include "new_pattern.hpp"
 
@@ -17,7 +19,8 @@ namespace ayumi::app {
 namespace {
 
 struct JumpOptions {
-  std::string robot = "hoap1", out, profile;
+  NewFile file;
+  std::string profile;
   // Values that are not given are those of HOAP-1, scaled to the robot.
   std::optional<double> height, stoop, cog_height;
   double forward = 0;
@@ -25,26 +28,43 @@ struct JumpOptions {
   bool highest = false;
 };
 
-// What the check finds first, or why the jump cannot be computed; empty if the jump passes.
-std::string obstacle(const RobotModel& model, const JumpParameters& p, const std::string& profile) {
+// What stands in the way of a jump: its worst error, or why the jump cannot be computed.
+struct Obstacle {
+  std::string text;  // empty if the jump passes
+  double severity = 0;
+};
+
+Obstacle obstacle(const RobotModel& model, const JumpParameters& p, const std::string& profile) {
   try {
     const CommandSeries series = sample_at_servo_period(model, jump_pattern(model, p));
     CheckOptions options;
     options.profile = profile;
     const ConsistencyReport report = check_consistency(model, series, options);
-    if (report.consistent) return {};
-    return finding_with_hint(report.findings.front());
+    Obstacle worst;
+    for (const Finding& finding : report.findings) {
+      if (finding.severity != Severity::error) continue;
+      const double severity = severity_of(finding);
+      if (!worst.text.empty() && severity <= worst.severity) continue;
+      worst = {kind_place_and_time(finding) + ": " + amount_text(finding), severity};
+    }
+    return worst;
   } catch (const Error& error) {
     // The jump is out of the legs' reach, or there is no push of this shape.
     if (error.code() == ErrorCode::bad_pattern || error.code() == ErrorCode::usage)
-      return error.what();
+      return {error.what(), HUGE_VAL};
     throw;
   }
 }
 
 bool passes(const RobotModel& model, const JumpParameters& p, const std::string& profile) {
-  return obstacle(model, p, profile).empty();
+  return obstacle(model, p, profile).text.empty();
 }
+
+// The jump of lowest height that comes nearest to passing, among those that were tried.
+struct Nearest {
+  JumpParameters jump;
+  Obstacle obstacle;
+};
 
 // The first profile with which the check finds no error; empty if no profile is enough.
 std::string sufficient_profile(const RobotModel& model, const JumpParameters& p) {
@@ -92,25 +112,17 @@ std::string lower_jump(const RobotModel& model, JumpParameters& p, const JumpOpt
   return {};
 }
 
-// What stands in the way of a low jump that is otherwise the default one.
-std::string obstacle_of_low_jump(const RobotModel& model, JumpParameters p) {
-  // Share of the height. Chosen: the lowest share that lower_jump() tries.
-  constexpr double kLow = 0.1;
-  p.height *= kLow;
-  const std::string why = obstacle(model, p, model.profile_names().front());
-  if (why.empty()) return "\n";
-  return "A jump of " + text::brief(1e3 * p.height, 2) +
-         " mm with the default stoop and COG height fails: " + why + "\n";
-}
-
 // Resolution of the search for the highest jump [m]. Chosen: 1 % of the default height (30 mm).
 constexpr double kStep = 2.5e-4;
+// Height of the lowest jump that is tried [m]. Chosen: the feet leave the ground for 0.03 s.
+constexpr double kLowest = 1e-3;
 
 // The greatest height that passes, over a grid of lift-off heights and stoops as shares of the
 // defaults. At each point of the grid, the search starts above the best height so far, doubles it
-// while it passes, and then bisects.
+// while it passes, and then bisects. `nearest` becomes the lowest jump that comes nearest to
+// passing.
 JumpParameters highest_jump(const RobotModel& model, JumpParameters p, const std::string& profile,
-                            const Progress& progress) {
+                            const Progress& progress, std::optional<Nearest>& nearest) {
   const JumpParameters scaled = jump_defaults(model);
   JumpParameters best = p;
   best.height = 0;
@@ -126,8 +138,14 @@ JumpParameters highest_jump(const RobotModel& model, JumpParameters p, const std
         p.height = height;
         return passes(model, p, profile);
       };
-      double low = std::max(1e-3, best.height + kStep), high = low;
-      if (!good(low)) continue;
+      double low = std::max(kLowest, best.height + kStep), high = low;
+      p.height = low;
+      const Obstacle found = obstacle(model, p, profile);
+      if (!found.text.empty()) {
+        if (best.height == 0 && (!nearest || found.severity < nearest->obstacle.severity))
+          nearest = Nearest{p, found};
+        continue;
+      }
       while (high < scaled.cog_height && good(2 * high)) high = low = 2 * high;
       high = 2 * low;
       while (high - low > kStep) {
@@ -143,15 +161,23 @@ JumpParameters highest_jump(const RobotModel& model, JumpParameters p, const std
 // The highest jump of the first profile that has one, if no value is given. If there is none,
 // returns "" and leaves the values unchanged.
 std::string any_jump(const RobotModel& model, JumpParameters& p, const JumpOptions& options,
-                     const Progress& progress) {
+                     const Progress& progress, std::optional<Nearest>& nearest) {
   if (options.height || options.stoop || options.cog_height) return {};
   for (const std::string& name : model.profile_names()) {
-    const JumpParameters best = highest_jump(model, p, name, progress);
+    const JumpParameters best = highest_jump(model, p, name, progress, nearest);
     if (best.height <= 0) continue;
     p = best;
     return name;
   }
   return {};
+}
+
+std::string limit_text(const std::optional<Nearest>& nearest) {
+  if (!nearest) return {};
+  const JumpParameters& jump = nearest->jump;
+  return "The jump that comes nearest rises by " + text::brief(1e3 * jump.height, 2) +
+         " mm from a COG height of " + text::brief(jump.cog_height, 3) + " m with a stoop of " +
+         text::brief(1e3 * jump.stoop, 2) + " mm. Its limit is " + nearest->obstacle.text;
 }
 
 std::vector<std::string> comments_of(const JumpParameters& p) {
@@ -166,19 +192,21 @@ std::vector<std::string> comments_of(const JumpParameters& p) {
 }
 
 void new_jump(Context& context, JumpOptions options) {
-  const RobotModel model = load_robot(options.robot, robot_search(context));
+  const RobotModel model = load_robot(options.file.robot, robot_search(context));
   JumpParameters p = jump_defaults(model);
   p.height = options.height.value_or(p.height);
   p.stoop = options.stoop.value_or(p.stoop);
   p.cog_height = options.cog_height.value_or(p.cog_height);
   p.forward = options.forward;
   p.times = options.times;
+  std::optional<Nearest> nearest;
   if (options.highest) {
     options.profile = model.limits(options.profile).name;
-    p = highest_jump(model, p, options.profile, context.progress());
+    p = highest_jump(model, p, options.profile, context.progress(), nearest);
     if (p.height <= 0) {
       context.print("profile " + options.profile +
-                    ": no jump of 1 mm or more passes the check, so nothing is written\n");
+                    ": no jump of 1 mm or more passes the check, so nothing is written. " +
+                    limit_text(nearest) + "\n");
       context.print_json("{\"pattern\": null}");
       context.exit_code = 1;
       return;
@@ -197,7 +225,7 @@ void new_jump(Context& context, JumpOptions options) {
                     " m and a COG height (ref z_G) of " + text::brief(p.cog_height) + " m. ");
       options.profile = lower_jump(model, p, options, context.progress());
       if (options.profile.empty())
-        options.profile = any_jump(model, p, options, context.progress());
+        options.profile = any_jump(model, p, options, context.progress(), nearest);
       if (options.profile.empty())
         context.print(
             options.height || options.stoop || options.cog_height
@@ -206,7 +234,7 @@ void new_jump(Context& context, JumpOptions options) {
                   "the jump exceeds\n"
                 : "No jump of 1 mm or more passes the check, from any COG height and with "
                   "any stoop that was tried. " +
-                      obstacle_of_low_jump(model, p));
+                      limit_text(nearest) + "\n");
       else
         context.print("These values were found: --height " + text::brief(p.height) +
                       " m, --stoop " + text::brief(p.stoop) + " m, --cog-height " +
@@ -216,7 +244,7 @@ void new_jump(Context& context, JumpOptions options) {
   }
   Pattern pattern = jump_pattern(model, p);
   pattern.profile = options.profile;
-  write_new_pattern(context, model, pattern, options.robot, options.out, comments_of(p));
+  write_new_pattern(context, model, pattern, options.file, comments_of(p));
 }
 
 }  // namespace
@@ -231,15 +259,7 @@ void add_new_jump(Command& parent, Context& context) {
       "  ayumi new jump --times 3 -o hop.json\n"
       "  ayumi new jump --forward 0.02 -o forward.json\n"
       "  ayumi new jump --highest --profile hoap1 -o highest.json");
-  command
-      ->add_option("--robot", options.robot,
-                   "Name of a bundled robot, or a folder, sidecar or robot file (URDF, MJCF, SDF, "
-                   "Choreonoid body, mi-lib ztk).")
-      ->type_name("ROBOT")
-      ->capture_default_str();
-  command->add_option("-o,--out", options.out, "Pattern file to write.")
-      ->type_name("F")
-      ->required();
+  add_new_file(*command, options.file);
   const auto scaled = [](double hoap1) {
     return " (default: the value for HOAP-1, scaled to the size of the robot; for hoap1 " +
            text::brief(hoap1) + ").";

@@ -24,25 +24,41 @@ TEST(NewJump, AHeightBeyondEveryProfileIsSaid) {
   Folder folder;
   const Output made =
       run_program({"new", "-q", "jump", "--height", "0.045", "-o", "j.json"}, folder.path());
-  EXPECT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_EQ(made.exit_code, 1) << made.err;
   EXPECT_NE(made.out.find("no actuator profile of hoap1 is strong enough for a jump of 0.045 m"),
             std::string::npos)
       << made.out;
-  EXPECT_EQ(contents(folder.path() / "j.json").find("\"profile\""), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "j.json"));
 }
 
-// Motors that turn slowly do not jump, and the message says what is in the way of a low jump.
-TEST(NewJump, WhatIsInTheWayOfALowJumpIsSaid) {
+// Servos whose constants are guessed do not prevent a jump for which speed and torque suffice.
+TEST(NewJump, ARobotThatOnlyHasAUrdfJumps) {
+  Folder folder;
+  write(
+      folder / "quick.urdf",
+      UrdfBiped{.size = 2, .mass = 4, .effort = [](const std::string&) { return 100; }, .speed = 12}
+          .text());
+  const Output made =
+      run_program({"new", "jump", "--robot", "quick.urdf", "-o", "jump.json"}, folder.path());
+  ASSERT_EQ(made.exit_code, 0) << made.out << made.err;
+  EXPECT_EQ(run_program({"check", "-q", "jump.json"}, folder.path()).exit_code, 0) << made.out;
+}
+
+// Motors that turn slowly do not jump, and the message says what limits the jump that comes
+// nearest.
+TEST(NewJump, WhatLimitsTheNearestJumpIsSaid) {
   Folder folder;
   write(folder / "slow.urdf", UrdfBiped{.speed = 1}.text());
   const Output made =
       run_program({"new", "jump", "--robot", "slow.urdf", "-o", "jump.json"}, folder.path());
-  EXPECT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_EQ(made.exit_code, 1) << made.err;
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "jump.json"));
   EXPECT_NE(made.out.find("No jump of 1 mm or more passes the check"), std::string::npos)
       << made.out;
   EXPECT_TRUE(std::regex_search(
-      made.out, std::regex("A jump of [0-9.]+ mm with the default stoop and COG height fails: "
-                           "joint_speed of ")))
+      made.out,
+      std::regex("The jump that comes nearest rises by 1 mm from a COG height of [0-9.]+ m "
+                 "with a stoop of [0-9.]+ mm. Its limit is (joint_speed|table_step) of ")))
       << made.out;
 }
 

@@ -79,12 +79,16 @@ TEST(NewWalk, OnTheLevelItIsTheRobotsOwn) {
 TEST(NewWalk, WhatNoProfileMendsIsSaid) {
   Folder folder;
   const Output out = made(folder, {"--steps", "2", "--turn", "25"});
-  EXPECT_EQ(out.exit_code, 0) << out.err;
+  EXPECT_EQ(out.exit_code, 1) << out.err;
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "w.json"));
   EXPECT_NE(out.out.find(
                 "the check finds the new pattern inconsistent: self_collision of r_foot - l_foot"),
             std::string::npos)
       << out.out;
   EXPECT_NE(out.out.find(" is the most that the legs can reach"), std::string::npos) << out.out;
+  const Output anyway = made(folder, {"--steps", "2", "--turn", "25", "--allow-inconsistent"});
+  EXPECT_EQ(anyway.exit_code, 0) << anyway.err;
+  EXPECT_EQ(run_program({"check", "-q", "w.json"}, folder.path()).exit_code, 1);
 }
 
 // A sway to the side that asks too much of the ankles, or is out of reach, is reported with the one
@@ -92,7 +96,7 @@ TEST(NewWalk, WhatNoProfileMendsIsSaid) {
 TEST(NewWalk, AsideNoFartherThanTheLegsCan) {
   Folder folder;
   const Output far = made(folder, {"--steps", "2", "--stride", "0", "--side", "0.04"});
-  EXPECT_EQ(far.exit_code, 0) << far.err;
+  EXPECT_EQ(far.exit_code, 1) << far.err;
   const size_t at = far.out.find("--side 0.0");
   ASSERT_NE(at, std::string::npos) << far.out;
   const std::string fits = far.out.substr(at + 7, far.out.find(' ', at + 7) - at - 7);

@@ -6,6 +6,7 @@
 #include <regex>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/inverse_kinematics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/io/robot/robot_guess.hpp"
@@ -204,6 +205,54 @@ TEST(FirstSidecar, ServosFollowTheEffortOfEachJoint) {
   EXPECT_NEAR(servos.at("l_knee").kp / (20 * model.mass() * 9.80665 * z), 1, 0.1);
   EXPECT_NEAR(servos.at("l_knee").rotor_inertia / servos.at("l_hip_roll").rotor_inertia, 139. / 88,
               0.1);
+}
+
+// In the air, a joint that turns at 1 rad/s makes the root link move so that the momentum stays
+// zero. Twice the kinetic energy of this motion is the inertia that the joint moves, and its servo
+// damps this inertia critically: kd = 2 sqrt(kp I). The root of the robot has no influence.
+TEST(FirstSidecar, ServosDampTheirLimbCritically) {
+  const TemporaryFolder folder;
+  const RobotModel model(guess({}, folder).robot);
+  const auto moving = [&](int row) {
+    RobotState state = model.rest_state();
+    Eigen::VectorXd rates = Eigen::VectorXd::Zero(model.velocity_count());
+    rates[row] = 1;
+    state.base_velocity = rates.head<3>();
+    state.base_angular_velocity = rates.segment<3>(3);
+    state.dtheta = rates.tail(model.dof_count());
+    return state;
+  };
+  const auto momentum = [&](const RobotState& state) {
+    RobotData data(model);
+    update_velocities(model, state, data);
+    const Momentum h = centroidal_momentum(model, data);
+    Eigen::Matrix<double, 6, 1> both;
+    both << h.linear, h.angular;
+    return both;
+  };
+  Eigen::Matrix<double, 6, 6> of_base;
+  for (int row = 0; row < 6; ++row) of_base.col(row) = momentum(moving(row));
+  for (int i = 0; i < model.dof_count(); ++i) {
+    RobotState state = moving(6 + i);
+    const Eigen::Matrix<double, 6, 1> base = -of_base.lu().solve(momentum(state));
+    state.base_velocity = base.head<3>();
+    state.base_angular_velocity = base.tail<3>();
+    RobotData data(model);
+    update_velocities(model, state, data);
+    double inertia = 0;
+    for (size_t b = 0; b < model.bodies().size(); ++b) {
+      const Inertia& body = model.bodies()[b].inertia;
+      const Eigen::Vector3d w = data.angular_velocity[b];
+      const Eigen::Vector3d own = data.rotation[b].transpose() * w;
+      const Eigen::Vector3d v = data.velocity[b] + w.cross(data.com[b] - data.position[b]);
+      inertia += body.mass * v.squaredNorm() + own.dot(body.about_com * own);
+    }
+    const ServoDescription& servo = model.limits().servo[static_cast<size_t>(i)];
+    // kd is rounded to two digits.
+    EXPECT_NEAR(servo.kd, 2 * std::sqrt(servo.kp * (inertia + servo.rotor_inertia)),
+                0.05 * servo.kd)
+        << model.dofs()[static_cast<size_t>(i)].name;
+  }
 }
 
 TEST(FirstSidecar, PlaceholdersAreNamed) {

@@ -10,6 +10,7 @@
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/inverse_kinematics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/self_collision.hpp"
@@ -81,9 +82,10 @@ constexpr double kFullEffortError = 0.2;
 // 3.6 and 3.2 mm with 10, 3.9 and 3.0 mm with 20. Robots whose servos are known have 21
 // (humanoid30) and 256 (HOAP-1).
 constexpr double kLegStiffness = 20;
-// kd over kp of a servo, in sqrt(z/g). Chosen: 20 ms for a robot of HOAP-1's size; HOAP-1's servos
-// have 4 ms and its soft ones 20 ms.
-constexpr double kDampingTime = 0.13;
+// Damping ratio of a servo that moves its limb while the robot is in the air. Derived: 1 is the
+// quickest response without overshoot. kd/kp is then 2 to 10 ms for a robot of HOAP-1's size; the
+// servos of HOAP-1 have 4 ms.
+constexpr double kDampingRatio = 1;
 // Rotor inertia of a servo per effort [kg m^2 per N m]. Source: armature 0.01 to 0.025 kg m^2 for
 // 88 to 139 N m in published models of humanoids.
 constexpr double kInertiaPerEffort = 2e-4;
@@ -842,10 +844,31 @@ bool is_placeholder(const std::vector<PlaceholderLimits>& placeholders, const st
 
 double to_digits(double value, int digits) { return std::stod(text::brief(value, digits)); }
 
+// The inertia that each joint moves while the robot is in the air in its home posture and all other
+// joints are held [kg m^2, kg]. It does not depend on which link is the root.
+VectorXd inertias_in_the_air(const RobotModel& model) {
+  RobotData data(model);
+  update_positions(model, model.rest_state("home"), data);
+  Eigen::MatrixXd mass;
+  mass_matrix(model, data, mass);
+  const Eigen::Matrix<double, 6, Eigen::Dynamic> coupling = mass.topRows<6>();
+  const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> base(mass.topLeftCorner<6, 6>());
+  VectorXd inertias(model.dof_count());
+  for (int i = 0; i < model.dof_count(); ++i) {
+    const Eigen::Matrix<double, 6, 1> column = coupling.col(6 + i);
+    // Rounding may leave less than 0 for a link without mass.
+    inertias[i] = std::max(0.0, mass(6 + i, 6 + i) - column.dot(base.solve(column)));
+  }
+  return inertias;
+}
+
 void find_servos(RobotGuess& guess) {
   RobotDescription& robot = guess.robot;
   const RobotModel model(robot);
   const double z = cog_height(model), weight = model.mass() * kGravity;
+  const VectorXd inertias = inertias_in_the_air(model);
+  // The smallest and the largest kd/kp [s].
+  double quickest = std::numeric_limits<double>::infinity(), slowest = 0;
   size_t estimated = 0, inferred = 0;
   for (int i = 0; i < model.dof_count(); ++i) {
     const Dof& dof = model.dofs()[i];
@@ -867,12 +890,15 @@ void find_servos(RobotGuess& guess) {
     servo.kp = effort / (kFullEffortError * unit);
     if (leg) servo.kp = std::max(servo.kp, kLegStiffness * weight * z / (unit * unit));
     servo.kp = to_digits(servo.kp, 3);
-    servo.kd = to_digits(kDampingTime * std::sqrt(z / kGravity) * servo.kp, 2);
     servo.rotor_inertia = to_digits(kInertiaPerEffort * effort / unit, 2);
     servo.viscous = joint.damping;
     servo.coulomb = joint.friction;
     if (stated != robot.servos.end() && stated->second.rotor_inertia > 0)
       servo.rotor_inertia = stated->second.rotor_inertia;
+    servo.kd =
+        to_digits(2 * kDampingRatio * std::sqrt(servo.kp * (inertias[i] + servo.rotor_inertia)), 2);
+    quickest = std::min(quickest, servo.kd / servo.kp);
+    slowest = std::max(slowest, servo.kd / servo.kp);
     robot.servos[dof.name] = servo;
   }
   robot.servos_inferred = inferred > 0;
@@ -885,8 +911,11 @@ void find_servos(RobotGuess& guess) {
       "kp is the effort limit of the joint divided by " + text::brief(kFullEffortError) +
           " rad; for legs kp is at least " + text::brief(kLegStiffness) +
           " times the weight times the COG height = " + text::brief(kLegStiffness * weight * z, 3) +
-          " N m/rad, so that the legs hold the robot; kd = " +
-          text::brief(kDampingTime * std::sqrt(z / kGravity), 2) + " s times kp" +
+          " N m/rad, so that the legs hold the robot; kd = 2 sqrt(kp I) damps the joint critically "
+          "(I: inertia that the joint moves while the robot is in the air, with the rotor), so "
+          "that kd/kp is " +
+          text::brief(1e3 * quickest, 2) + " to " + text::brief(1e3 * slowest, 2) +
+          " ms, which the servo targets compensate" +
           (estimated == 0
                ? ""
                : "; the effort limits of " + std::to_string(estimated) +
