@@ -467,10 +467,11 @@ void add_repair(Command& app, Context& context) {
   command->add_flag("--baked", options.baked,
                     "Write the result as a dense table. Without this option, a correction is added "
                     "to the pattern.");
-  command->add_flag("--from-scratch", options.from_scratch,
-                    "Make a new motion from the phases, footholds, COG and ZMP of the pattern "
-                    "alone. The search starts from the default posture, and the motion is written "
-                    "as a dense table.");
+  command->add_flag(
+      "--from-scratch", options.from_scratch,
+      "Make a new motion from the phases, footholds, COG and ZMP of the pattern "
+      "alone. The search starts from postures that inverse kinematics finds for feet and "
+      "COG, and the motion is written as a dense table.");
   command->add_flag("--keep-partial", options.repair.keep_partial,
                     "After Ctrl-C or a failure, write the motion with the smallest violation.");
   command

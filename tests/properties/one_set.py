@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What `check` calls consistent, what `repair` calls repaired and what `export` accepts is one set.
 
-    one_set.py PROGRAM [--seeds FIRST:LAST] [--keep DIR]
+    one_set.py PROGRAM [--seeds FIRST:LAST] [--keep DIR] [--stand] [--robot SIDECAR=SCALE]
 
 Each seed makes a pattern as an author writes it, with keys: a bundled pattern or one of `ayumi new`,
 of hoap1 or humanoid30, with a fault of ten kinds, from slight to gross. Where the pattern is
@@ -14,6 +14,10 @@ each time:
   - `repair` never fails on a consistent pattern.
 The exit code is 1 when something does not hold; the seed is printed. A table of the outcomes is
 printed at the end.
+
+With --stand, each repaired motion is simulated in open loop in every plant that the program has, and
+the table counts those that do not stand. --robot adds a robot, such as one of which `ayumi init`
+wrote the sidecar; SCALE is its size relative to HOAP-1.
 """
 import argparse
 import collections
@@ -57,8 +61,9 @@ class Generator:
         scale = SCALE[robot]
         kind = dice.choice(["bundled", "walk", "walk", "side", "turn", "sway", "squat", "wave",
                             "kick", "bow", "march", "stand"])
-        if kind == "bundled":
-            with open(os.path.join(SOURCE, "patterns", robot + "_walk.json")) as file:
+        bundled = os.path.join(SOURCE, "patterns", robot + "_walk.json")
+        if kind == "bundled" and os.path.exists(bundled):
+            with open(bundled) as file:
                 return kind, json.loads(without_comments(file.read()))
         words = {
             "walk": ["walk", "--steps", str(dice.randint(1, 4)), "--stride",
@@ -67,13 +72,20 @@ class Generator:
                      f"{dice.uniform(0.005, 0.02) * scale:.4f}"],
             "turn": ["turn"],
             "march": ["march"],
+            "bundled": ["walk"],
         }.get(kind, [kind])
         return kind, self.new([*words, "--robot", robot])
 
     def make(self, dice):
-        robot = ROBOTS[dice.random() < 0.35]
-        motion, pattern = self.motion(dice, robot)
+        robot = ROBOTS[dice.random() < 0.35] if len(ROBOTS) == 2 else dice.choice(ROBOTS)
+        while True:
+            try:
+                motion, pattern = self.motion(dice, robot)
+                break
+            except subprocess.CalledProcessError:
+                pass  # `new` finds no such motion for this robot
         pattern.pop("scenario", None)
+        pattern["robot"] = robot
         return robot, motion, pattern
 
 
@@ -128,11 +140,11 @@ def bump_of_joint(pattern, dice, joint, angle, width):
     return True
 
 
-ARMS = ["shoulder_pitch", "shoulder_roll", "elbow"]
+ARM = re.compile("shoulder|elbow|arm", re.I)
 
 
-def arm_joint(dice):
-    return dice.choice("lr") + "_" + dice.choice(ARMS)
+def arm_joint(pattern, dice):
+    return dice.choice([joint for joint in HOME[pattern["robot"]] if ARM.search(joint)])
 
 
 def swings(pattern):
@@ -140,12 +152,12 @@ def swings(pattern):
 
 
 def joint_beyond_its_range(pattern, dice, scale):
-    return bump_of_joint(pattern, dice, arm_joint(dice),
+    return bump_of_joint(pattern, dice, arm_joint(pattern, dice),
                          dice.choice((-1, 1)) * dice.uniform(40, 140), dice.uniform(1.2, 2))
 
 
 def joint_too_fast(pattern, dice, scale):
-    return bump_of_joint(pattern, dice, arm_joint(dice),
+    return bump_of_joint(pattern, dice, arm_joint(pattern, dice),
                          dice.choice((-1, 1)) * dice.uniform(10, 60), dice.uniform(0.12, 0.5))
 
 
@@ -244,18 +256,26 @@ FAULTS = [("a joint beyond its range", joint_beyond_its_range),
 HOME, COG_HEIGHT = {}, {}
 
 
-def know(robot, program):
+def know(robot, program, folder):
     """Angles of the home posture [deg], and the height of its COG [m]."""
-    with open(os.path.join(SOURCE, "robots", robot, "robot.json")) as file:
-        text = re.sub(r"//.*$", "", file.read(), flags=re.M)
-    HOME[robot] = json.loads(text)["postures_deg"]["home"]
-    COG_HEIGHT[robot] = {"hoap1": 0.248, "humanoid30": 0.6}[robot]
+    sidecar = robot if robot.endswith(".json") else os.path.join(SOURCE, "robots", robot, "robot.json")
+    with open(sidecar) as file:
+        sidecar = json.loads(re.sub(r"//.*$", "", file.read(), flags=re.M))
+    home = sidecar["postures_deg"]["home"]
+    HOME[robot] = {joint: home.get(joint, 0)
+                   for joint in [*home, *sidecar.get("joint_order", [])]}
+    squat = os.path.join(folder, "squat.json")
+    subprocess.run([program, "new", "squat", "--robot", robot, "-o", squat, "--force", "-q"],
+                   check=True, stdout=subprocess.DEVNULL)
+    with open(squat) as file:
+        keys = json.loads(without_comments(file.read()))["keyframes"]
+    COG_HEIGHT[robot] = max(key["cog"]["height"] for key in keys if "height" in key.get("cog", {}))
 
 
 class Trial:
     def __init__(self, program, folder):
         self.program, self.folder = program, folder
-        self.wrong = []
+        self.wrong, self.falls = [], []
 
     def run(self, *words):
         done = subprocess.run([self.program, *words], cwd=self.folder, stdin=subprocess.DEVNULL,
@@ -290,13 +310,23 @@ class Trial:
         formats = ["hoap", "csv", "json"] if robot == "hoap1" else ["csv", "json"]
         written, said = [], ""
         for form in formats:
+            profile = ["--profile", robot] if os.sep not in robot else []
             code, out, err = self.run("export", name, "--format", form, "-o", "table." + form,
-                                      "--force", "--profile", robot)
+                                      "--force", *profile)
             self.must(code in (0, 1), f"export --format {form} ended with {code}", err)
             written.append(code == 0)
             said += out + err
         self.must(len(set(written)) == 1, "export accepts in one format only", said)
         return written[0], said
+
+    def stands(self, name, plant):
+        """Whether the robot stands after the motion in open loop; None if there is no such plant."""
+        code, out, err = self.run("simulate", name, "-o", "run_" + plant, "--controller", "none",
+                                  "--plant", plant, "--light", "--force", "--json", "-q")
+        if code == 2 and plant == "mujoco":
+            return None
+        self.must(code in (0, 1), f"simulate --plant {plant} ended with {code}", err)
+        return code == 0
 
     def repaired(self, name, output, words):
         code, out, err = self.run("repair", name, "-o", output, "--force", "--json", "-q", *words)
@@ -304,7 +334,7 @@ class Trial:
         return code == 0, out + err
 
 
-def judge(trial, robot, dice, repairs):
+def judge(trial, robot, dice, repairs, plants):
     """The outcome of one pattern, by its name in the table; a consistent one may stay unrepaired."""
     good, printed = trial.check("p.json")
     if good is None:
@@ -325,6 +355,9 @@ def judge(trial, robot, dice, repairs):
     accepted, said = trial.exported("r.json", robot)
     trial.must(still, f"repaired ({words}), but not consistent", printed)
     trial.must(accepted, f"repaired ({words}), but refused", said)
+    for plant in plants:
+        if trial.stands("r.json", plant) is False:
+            trial.falls.append(f"{plant} ({' '.join(words)})" if words else plant)
     return "consistent" if good else "repaired"
 
 
@@ -333,13 +366,20 @@ def main():
     parser.add_argument("program")
     parser.add_argument("--seeds", default="1:200", metavar="FIRST:LAST")
     parser.add_argument("--keep", help="folder for the patterns of which something does not hold")
+    parser.add_argument("--stand", action="store_true", help="simulate what is repaired")
+    parser.add_argument("--robot", action="append", default=[], metavar="SIDECAR=SCALE")
     options = parser.parse_args()
+    for robot in options.robot:
+        name, scale = robot.rsplit("=", 1)
+        SCALE[os.path.abspath(name)] = float(scale)
+    global ROBOTS
+    ROBOTS = tuple(SCALE)
     first, last = map(int, options.seeds.split(":"))
     program = os.path.abspath(options.program)
-    for robot in ROBOTS:
-        know(robot, program)
     outcomes, failed = collections.defaultdict(collections.Counter), 0
     with tempfile.TemporaryDirectory(prefix="ayumi_one_set_") as folder:
+        for robot in ROBOTS:
+            know(robot, program, folder)
         generator = Generator(program, folder)
         for seed in range(first, last + 1):
             dice = random.Random(seed)
@@ -350,17 +390,20 @@ def main():
                 fault = spoil(pattern, dice, SCALE[robot])
                 with open(os.path.join(folder, "p.json"), "w") as file:
                     json.dump(pattern, file, indent=1)
-                outcome = judge(trial, robot, dice, fault_number == MOST_FAULTS)
+                outcome = judge(trial, robot, dice, fault_number == MOST_FAULTS,
+                                ["ayumi", "mujoco"] if options.stand else [])
                 if outcome == "cannot be sampled" and fault_number < MOST_FAULTS:
                     pattern = json.loads(before)  # another fault in its place
                 elif outcome != "consistent":
                     break
             outcomes[fault][outcome] += 1
-            print(f"{seed}: {robot} {motion}, {fault}: {outcome}", flush=True)
+            outcomes[fault]["repaired, falls"] += bool(trial.falls)
+            print(f"{seed}: {robot} {motion}, {fault}: {outcome}"
+                  + (f"; falls in {', '.join(trial.falls)}" if trial.falls else ""), flush=True)
             for wrong in trial.wrong:
                 print(f"{seed}: WRONG: {wrong}", flush=True)
-            if trial.wrong:
-                failed += 1
+            if trial.wrong or trial.falls:
+                failed += bool(trial.wrong)
                 if options.keep:
                     os.makedirs(options.keep, exist_ok=True)
                     for name in ("p.json", "r.json"):
@@ -371,15 +414,16 @@ def main():
                                 copy.write(source.read())
             if os.path.exists(os.path.join(folder, "r.json")):
                 os.remove(os.path.join(folder, "r.json"))
-    kinds = ["cannot be sampled", "consistent", "not repaired", "repaired"]
+    kinds = ["cannot be sampled", "consistent", "not repaired", "repaired"] + (
+        ["repaired, falls"] if options.stand else [])
     print("| fault | patterns | " + " | ".join(kinds) + " |")
     print("| --- |" + " --- |" * (len(kinds) + 1))
     total = collections.Counter()
     for fault, counts in sorted(outcomes.items()):
         total.update(counts)
-        print(f"| {fault} | {sum(counts.values())} | "
+        print(f"| {fault} | {sum(counts[kind] for kind in kinds[:4])} | "
               + " | ".join(str(counts[kind]) for kind in kinds) + " |")
-    print(f"| all | {sum(total.values())} | " + " | ".join(str(total[k]) for k in kinds) + " |")
+    print(f"| all | {sum(total[kind] for kind in kinds[:4])} | " + " | ".join(str(total[k]) for k in kinds) + " |")
     if failed:
         print(f"{failed} patterns of which something does not hold")
     return 1 if failed else 0

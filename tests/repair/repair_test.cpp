@@ -7,6 +7,7 @@
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
 #include "ayumi/motion/pattern_context.hpp"
+#include "ayumi/plan/foot_plan.hpp"
 #include "ayumi/plan/sample_plan.hpp"
 #include "ayumi/repair/correction_problem.hpp"
 #include "ayumi/repair/policy.hpp"
@@ -328,33 +329,84 @@ TEST(Repair, SameBytesForAnyNumberOfThreads) {
 
 // There is only the plan of a walk and of a squat, and no motion: legs and arms are as they are at
 // home.
+namespace {
+
+// The largest distance of a sole from its planned place [m].
+double farthest_sole(const CommandSeries& plan, const CommandSeries& motion) {
+  double most = 0;
+  RobotData data(hoap1());
+  for (size_t k = 0; k < plan.samples.size(); k += 20) {
+    update_positions(hoap1(), motion.samples[k].state, data);
+    for (const Side side : {Side::left, Side::right})
+      most = std::max(most, (sole_pose(hoap1(), data, side).translation() -
+                             plan.samples[k].feet[static_cast<size_t>(side)].translation())
+                                .norm());
+  }
+  return most;
+}
+
+Keyframe cog_key(double t, std::optional<double> x, std::optional<double> y,
+                 std::optional<double> height) {
+  Keyframe key;
+  key.t = t;
+  key.cog_x = x;
+  key.cog_y = y;
+  key.cog_height = height;
+  return key;
+}
+
+// A walk of which only the phases and footholds are known; the posture is that of home.
+Pattern plan_of_walk(const WalkParameters& walk) {
+  Pattern pattern = walk_pattern(hoap1(), walk);
+  pattern.keyframes.assign(1, Keyframe());
+  pattern.keyframes[0].posture = "home";
+  return pattern;
+}
+
+}  // namespace
+
 TEST(FromScratch, MakesAMotionOfThePlanAlone) {
   Pattern squat;
   squat.robot = "hoap1";
   squat.phases.emplace_back().until = 3;
   const double home = default_cog_height(hoap1(), squat);
-  for (const auto& [t, height] : {std::pair(0.0, 1.0), std::pair(1.2, 0.88), std::pair(2.6, 1.0)}) {
-    Keyframe key;
-    key.t = t;
-    key.cog_height = height * home;
-    squat.keyframes.push_back(key);
-  }
-  for (const Pattern& pattern : {squat, walk_pattern(hoap1(), {.steps = 2})}) {
+  squat.keyframes = {cog_key(0, {}, {}, home), cog_key(1.2, {}, {}, 0.88 * home),
+                     cog_key(2.6, {}, {}, home)};
+  for (const Pattern& pattern :
+       {squat, plan_of_walk({.steps = 4}), plan_of_walk({.steps = 3, .stride = 0.01, .turn = 0.15}),
+        plan_of_walk({.steps = 2, .stride = 0, .side = 0.02})}) {
     const CommandSeries plan = sample_plan(hoap1(), pattern);
-    ASSERT_FALSE(check_consistency(hoap1(), plan).consistent);
     const RepairResult r = generate(hoap1(), pattern, plan, {});
     expect_repaired(r);
-    RobotData data(hoap1());
-    for (size_t k = 0; k < plan.samples.size(); k += 20) {
-      update_positions(hoap1(), r.series.samples[k].state, data);
-      for (const Side side : {Side::left, Side::right}) {
-        const Eigen::Vector3d planned =
-            plan.samples[k].feet[static_cast<size_t>(side)].translation();
-        ASSERT_LT((sole_pose(hoap1(), data, side).translation() - planned).norm(), 1e-3)
-            << name_of(side) << " at " << k * plan.dt;
-      }
-    }
+    EXPECT_LT(farthest_sole(plan, r.series), 1e-3);
     if (pattern.phases.size() > 1) continue;
     EXPECT_NEAR(r.series.samples[1200].cog.z(), 0.88 * home, 2e-3);
   }
+}
+
+// The COG has a key at the end alone. The straight way to it leads the ZMP out of the support in
+// each step; so only the end is a goal.
+TEST(FromScratch, AKeyOfTheCogAtTheEndIsAGoal) {
+  Pattern pattern = plan_of_walk({.steps = 3});
+  const FootPlan feet(hoap1(), pattern);
+  const double end = feet.duration();
+  const Eigen::Vector3d middle = feet.support_center(end);
+  pattern.keyframes.push_back(cog_key(end, middle.x(), middle.y() + 0.008, {}));
+  const CommandSeries plan = sample_plan(hoap1(), pattern);
+  ASSERT_FALSE(check_consistency(hoap1(), plan).consistent);
+  const RepairResult r = generate(hoap1(), pattern, plan, {});
+  expect_repaired(r);
+  EXPECT_NEAR(r.series.samples.back().cog.x(), middle.x(), 2e-3);
+  EXPECT_NEAR(r.series.samples.back().cog.y(), middle.y() + 0.008, 2e-3);
+}
+
+// The COG is planned so high that the legs do not reach the ground in the strides.
+TEST(FromScratch, LegsThatAreTooShortForThePlanAreHelped) {
+  Pattern pattern = plan_of_walk({.steps = 2, .stride = 0.05});
+  pattern.cog_height = 0.262;
+  EXPECT_THROW(sample(hoap1(), pattern), Error);
+  const CommandSeries plan = sample_plan(hoap1(), pattern);
+  ASSERT_FALSE(check_consistency(hoap1(), plan).consistent);
+  const RepairResult r = generate(hoap1(), pattern, plan, {});
+  expect_repaired(r);
 }

@@ -103,9 +103,12 @@ bool is_kind(const Violation& v) {
 
 const FindingSet kFeet = {"`foot_slip`, `foot_penetration`, `foot_float`",
                           [](const Violation& v) { return is_foot(v.kind); }};
+const FindingSet kScrape = {"`foot_scrape`", is_kind<FindingKind::foot_scrape>};
 const FindingSet kFeetAndTiming = {
-    "`foot_slip`, `foot_penetration`, `foot_float`, `contact_ends_early`", [](const Violation& v) {
-      return is_foot(v.kind) || v.kind == FindingKind::contact_ends_early;
+    "`foot_slip`, `foot_penetration`, `foot_float`, `foot_scrape`, `contact_ends_early`",
+    [](const Violation& v) {
+      return is_foot(v.kind) || v.kind == FindingKind::foot_scrape ||
+             v.kind == FindingKind::contact_ends_early;
     }};
 const FindingSet kSlip = {"`foot_slip`", is_kind<FindingKind::foot_slip>};
 const FindingSet kFloat = {"`foot_float`", is_kind<FindingKind::foot_float>};
@@ -342,6 +345,10 @@ const Condition kSameJoint = {
     "cause and effect concern the same joint",
     [](Scene& scene, int i, int j, const Interval&) { return same_item(scene, i, j); }};
 
+const Condition kSameFoot = {
+    "cause and effect concern the same foot",
+    [](Scene& scene, int i, int j, const Interval&) { return same_item(scene, i, j); }};
+
 const Condition kInsideInterval = {"the effect begins and ends within this interval",
                                    [](Scene& scene, int, int j, const Interval& interval) {
                                      return interval.contains(scene.window(j));
@@ -456,6 +463,7 @@ Rule jumps_beside(const FindingSet& foot) {
 const std::vector<Rule>& rules() {
   static const std::vector<Rule> table = {
       {kFeet, Order::by_effect, {{kFeet, kPaddedWindow, kLargerOfOneFoot}}},
+      {kFeet, Order::by_effect, {{kScrape, kPaddedWindow, kSameFoot}}},
       {kPosition,
        Order::by_time,
        {{kForces, kAngleInfluence, kNotAskedFor},

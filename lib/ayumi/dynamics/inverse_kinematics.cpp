@@ -702,6 +702,8 @@ PostureSolution InverseKinematics::solve(const PostureTarget& target, RobotState
   if (!lacking_) set_attitude(target, state, data);
   std::array<double, 2> now;
   if (!lacking_) solution.reached = newton(target, state, data, solution.error, now);
+  if (target.nearest && solution.reached)
+    for (int s = 0; s < 2; ++s) solution.reached = solution.reached && now[s] * bend_[s] > 0;
   if (!solution.reached) {
     if (!lacking_) {
       for (int dof = 0; dof < model_->dof_count(); ++dof)

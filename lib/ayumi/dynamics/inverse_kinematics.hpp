@@ -19,6 +19,9 @@ struct PostureTarget {
   /// How firmly each sole keeps its place, by Side: 1 for a sole that carries, down to 0 in the
   /// middle of a swing. It only counts where legs have fewer than six joints.
   std::array<double, 2> hold = {1, 1};
+  /// Whether the nearest posture with knees bent the right way is wanted where the target is only
+  /// reached with a knee bent the other way.
+  bool nearest = false;
 };
 
 struct PostureSolution {

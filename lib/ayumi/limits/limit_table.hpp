@@ -20,6 +20,7 @@
   line(foot_slip, stance)                       \
   line(foot_penetration, stance)                \
   line(foot_float, stance)                      \
+  line(foot_scrape, foot_scrape)                \
   line(contact_ends_early, contact_timing)      \
   line(joint_position, joint_position)          \
   line(joint_speed, joint_speed)                \

@@ -13,6 +13,7 @@
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/motion/differentiate.hpp"
+#include "ayumi/motion/smooth_motion.hpp"
 
 namespace ayumi {
 
@@ -104,7 +105,7 @@ CommandSeries apply_correction(const RobotModel& model, const CommandSeries& ser
                                                  joint + "'" +
                                                  text::suggestion(joint, model.dof_names()));
   }
-  CommandSeries result = series;
+  CommandSeries result = smoothed(series, track.smooth);
   result.kept.reset();
   RobotData data(model);
   for (size_t k = 0; k < result.samples.size(); ++k) {

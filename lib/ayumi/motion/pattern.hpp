@@ -131,6 +131,12 @@ struct DenseTable {
   int interval_ms = 0;  ///< time between rows of the imported file [ms]; 0 if none was imported
 };
 
+/// A time in which the sampled motion is replaced by smooth curves (motion/smooth_motion.hpp).
+struct SmoothWindow {
+  double begin = 0, end = 0;  ///< beginning and end [s]
+  double spacing = 0;         ///< time between the knots of the curves [s]
+};
+
 /// A smooth change that is added to the sampled motion, as a repair writes it: uniform cubic
 /// B-splines in time. The columns are: base x y z [m], the rotation vector of the base (world axes,
 /// left-multiplied) [rad], and the joints.
@@ -139,6 +145,8 @@ struct CorrectionTrack {
   double spacing = 0;               ///< time between knots [s]
   std::vector<std::string> joints;  ///< names of the columns from 6 on
   Eigen::MatrixXd coefficients;     ///< control points x (6 + joints)
+  /// Windows in which the motion is made smooth before the change is added.
+  std::vector<SmoothWindow> smooth = {};
 };
 
 /// The commanded quantity that a repair keeps and that the others have to follow. COG, ZMP and f_z

@@ -116,9 +116,11 @@ PostureSolution solve_posture(const SampleJob& job, double t, const Eigen::Matri
   target.cog = sample.cog;
   target.feet = sample.feet;
   target.hold = {job.feet.hold(Side::left, t), job.feet.hold(Side::right, t)};
+  target.nearest = job.nearest;
   const auto legs = [&] {
     const PostureSolution solution = job.ik.solve(target, sample.state, data);
-    if (!solution.reached || solution.knee_flipped) complain_reach(job, t, sample, solution);
+    if (!job.nearest && (!solution.reached || solution.knee_flipped))
+      complain_reach(job, t, sample, solution);
     return solution;
   };
   PostureSolution solution = legs();
@@ -213,8 +215,10 @@ struct Worst {
   double swing = 0;  // displacement of a sole that swings [m]
   double lean = 0;   // lean of the trunk, for legs that lack joints [rad]
   double zmp = 0;    // ZMP error of the full model in the solved axes [m]
+  bool out_of_reach = false;  // whether a posture does not reach its targets
 
   void include(const Worst& other) {
+    out_of_reach = out_of_reach || other.out_of_reach;
     miss = std::max(miss, other.miss);
     swing = std::max(swing, other.swing);
     lean = std::max(lean, other.lean);
@@ -248,7 +252,7 @@ Worst solve_block(const SampleJob& job, const CogPlan& plan, int first, int end,
     put_plan(job, t, sample);
     const PostureSolution solution =
         solve_posture(job, t, plan.turned(t, trunk_attitude(job, t, sample.feet)), sample, data);
-    worst.include({.lean = solution.lean});
+    worst.include({.lean = solution.lean, .out_of_reach = !solution.reached});
     for (const Side side : {Side::left, Side::right}) {
       double& miss = job.feet.hold(side, t) < 1 ? worst.swing : worst.miss;
       miss = std::max(miss, solution.miss[index(side)]);
@@ -256,6 +260,38 @@ Worst solve_block(const SampleJob& job, const CogPlan& plan, int first, int end,
     postures.add(posture_of(sample));
   }
   return worst;
+}
+
+// Where postures begin or cease to reach their targets, the motion has kinks, which no smooth
+// correction can remove. Cubic splines through some of the postures replace such a motion.
+void smooth_postures(const SampleJob& job, CommandSeries& series) {
+  // Time between these postures [s]. Chosen: half the distance of the knots of a repair, so that a
+  // repair can correct what lies between them.
+  constexpr double kStep = 0.025;
+  const long every = std::max(1L, std::lround(kStep / job.dt)), last = job.count - 1;
+  const Eigen::Index size = 7 + job.model.dof_count();
+  std::vector<std::vector<TrackKey>> keys(static_cast<size_t>(size));
+  VectorXd x(size);
+  const long steps = std::max(1L, last / every);
+  for (long i = 0; i <= steps; ++i) {
+    const long k = i == steps ? last : i * every;
+    const RobotState& state = series.samples[static_cast<size_t>(k)].state;
+    Eigen::Vector4d q = state.base.attitude.coeffs();
+    if (i > 0 && q.dot(x.segment<4>(3)) < 0) q = -q;
+    x << state.base.position, q, state.theta;
+    for (Eigen::Index j = 0; j < size; ++j)
+      keys[static_cast<size_t>(j)].push_back(
+          {static_cast<double>(k) * job.dt, x[j], Interpolation::spline});
+  }
+  const std::vector<Track> tracks(keys.begin(), keys.end());
+  for (int k = 0; k < job.count; ++k) {
+    for (Eigen::Index j = 0; j < size; ++j)
+      x[j] = tracks[static_cast<size_t>(j)].at(k * job.dt).value;
+    RobotState& state = series.samples[static_cast<size_t>(k)].state;
+    state.base.position = x.head<3>();
+    state.base.attitude = Eigen::Quaterniond(Eigen::Vector4d(x.segment<4>(3))).normalized();
+    state.theta = x.tail(job.model.dof_count());
+  }
 }
 
 // Computes rates, commanded ZMP and f_z of the samples first, ..., end - 1.
@@ -379,6 +415,7 @@ CommandSeries sample_body_driven(const SampleJob& job) {
   Worst worst = worst_of_blocks(job, plan.postures.empty() ? 0 : kBlock, [&](int first, int end) {
     return solve_block(job, plan, first, end, series);
   });
+  if (worst.out_of_reach) smooth_postures(job, series);
   worst.include(worst_of_blocks(
       job, kBlock, [&](int first, int end) { return fill_block(job, plan, first, end, series); }));
   describe(job, plan, worst, series);

@@ -26,6 +26,8 @@ struct SampleJob {
   int count = 0;      ///< number of samples
   int threads = 0;    ///< number of threads; 0 for all cores
   const Progress& progress;
+  /// Whether a posture that is out of reach becomes the nearest posture; otherwise it is an error.
+  bool nearest = false;
   /// Copied for each block of samples, because a copy is cheaper than a new one.
   const RobotData data = RobotData(model);
   const TreeDynamics dynamics = TreeDynamics(model);
@@ -95,7 +97,8 @@ Eigen::VectorXd posture_of(const CommandSample& sample);
 void continue_posture(const Extrapolation& postures, CommandSample& sample);
 
 /// Solves base and legs at time t for sample.cog and the plan in `sample`, with the initial guess
-/// sample.state. Throws Error(bad_pattern) that names phase, time, foot and missing millimetres.
+/// sample.state. Out of reach, throws Error(bad_pattern) that names phase, time, foot and missing
+/// millimetres, or takes the nearest posture (SampleJob::nearest).
 PostureSolution solve_posture(const SampleJob& job, double t, const Eigen::Matrix3d& trunk,
                               CommandSample& sample, RobotData& data);
 

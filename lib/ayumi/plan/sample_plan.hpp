@@ -1,16 +1,23 @@
 #pragma once
-// The plan of a pattern, without the motion that follows it.
+// The motion that follows from the plan of a pattern alone.
 
 #include "ayumi/plan/sample.hpp"
 
 namespace ayumi {
 
-/// The plan of a pattern alone: its contacts, the planned feet, COG, ZMP and f_z, by the pendulum
-/// law where no keys give the COG. The legs keep the default posture, which is carried along with
-/// the COG, even if the feet should be elsewhere. A motion that has to be generated can start from
-/// this plan. Keys and table columns of leg joints are left out. Throws the same errors as
-/// sample(), but never because a foot is out of reach.
+/// What the COG of a plan follows along the ground.
+enum class PlannedCog {
+  keys,  ///< its keys, and the ZMP in the axes without keys
+  zmp    ///< the ZMP keys or the centres of the supporting soles, from the first to the last place
+         ///< that the keys give to the COG
+};
+
+/// The motion that inverse kinematics finds for the contacts, the planned feet and the planned COG
+/// of a pattern. Keys and table columns of leg joints, hands and gaze are left out. If the legs
+/// cannot reach the feet, the motion goes smoothly through the nearest postures; so a repair can
+/// start from it. Throws the same errors as sample(), but never because a foot is out of reach.
 CommandSeries sample_plan(const RobotModel& model, const Pattern& pattern,
-                          const SampleOptions& options = {}, const Progress& progress = {});
+                          const SampleOptions& options = {}, const Progress& progress = {},
+                          PlannedCog cog = PlannedCog::keys);
 
 }  // namespace ayumi

@@ -312,6 +312,21 @@ PatternTracks read_tracks(const RobotModel& model, const Pattern& pattern, const
 }
 
 std::array<Track, 3> default_zmp(const FootPlan& feet) {
+  return default_zmp(feet, {feet.support_center(0), feet.support_center(feet.duration())});
+}
+
+void lead_by_zmp(const FootPlan& feet, PatternTracks& tracks) {
+  std::array<Vector3d, 2> ends = {feet.support_center(0), feet.support_center(feet.duration())};
+  for (int axis = 0; axis < 2; ++axis) {
+    if (!tracks.cog[axis]) continue;
+    ends[0][axis] = tracks.cog[axis]->at(0).value;
+    ends[1][axis] = tracks.cog[axis]->at(feet.duration()).value;
+    tracks.cog[axis].reset();
+  }
+  if (!tracks.zmp) tracks.zmp = default_zmp(feet, ends);
+}
+
+std::array<Track, 3> default_zmp(const FootPlan& feet, const std::array<Vector3d, 2>& ends) {
   std::array<Keys, 3> keys;
   const auto add = [&](double t, const Vector3d& point) {
     if (!keys[0].empty() && t <= keys[0].back().t + kSameTime) t = keys[0].back().t + 1e-3;
@@ -320,7 +335,7 @@ std::array<Track, 3> default_zmp(const FootPlan& feet) {
   // Time of the weight shift at both ends of the motion [s]. Chosen: 3/omega for a COG at 0.22 m.
   // No measured case changes between half and twice the value (constants.md).
   constexpr double kShift = 0.45;
-  add(0, feet.support_center(0));
+  add(0, ends[0]);
   const auto& phases = feet.phases();
   for (size_t i = 0; i < phases.size(); ++i) {
     if (phases[i].support == Support::both) continue;
@@ -331,13 +346,13 @@ std::array<Track, 3> default_zmp(const FootPlan& feet) {
     }
     const Side side = phases[i].support == Support::left ? Side::left : Side::right;
     const double begin = feet.begin(static_cast<int>(i));
-    if (keys[0].size() == 1 && begin > kShift) add(begin - kShift, feet.support_center(0));
+    if (keys[0].size() == 1 && begin > kShift) add(begin - kShift, ends[0]);
     if (begin > 0) add(begin, feet.sole_center(side, begin));
     add(phases[i].until, feet.sole_center(side, phases[i].until));
   }
   const double end = feet.duration();
   if (keys[0].size() > 1 && end > keys[0].back().t + 1e-3)
-    add(std::min(end, keys[0].back().t + kShift), feet.support_center(end));
+    add(std::min(end, keys[0].back().t + kShift), ends[1]);
   return {Track(keys[0]), Track(keys[1]), Track(keys[2])};
 }
 

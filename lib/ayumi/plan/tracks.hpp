@@ -40,7 +40,14 @@ PatternTracks read_tracks(const RobotModel& model, const Pattern& pattern, const
                           const std::vector<bool>& solved);
 
 /// ZMP of a pattern with neither ZMP nor COG keys: the centre of the supporting sole in single
-/// support, from centre to centre in double support, and the middle of the feet at both ends.
+/// support, from centre to centre in double support, and `ends` at the beginning and at the end
+/// [m].
+std::array<Track, 3> default_zmp(const FootPlan& feet, const std::array<Eigen::Vector3d, 2>& ends);
+/// The same with the middle of the feet at both ends.
 std::array<Track, 3> default_zmp(const FootPlan& feet);
+
+/// Makes the COG follow the ZMP along the ground in place of its keys: the ZMP has its own keys, or
+/// is default_zmp() from the first place of the COG to the last one.
+void lead_by_zmp(const FootPlan& feet, PatternTracks& tracks);
 
 }  // namespace ayumi

@@ -36,8 +36,6 @@ struct CorrectionSpec {
   Eigen::VectorXd weights;  ///< factors on the weights of the joints by dof; empty if all are 1
   Eigen::MatrixXd initial;  ///< initial control points; empty for no correction
 
-  bool planned_feet = false;  ///< swinging feet follow the plan and not the given motion
-
   // These members say what is judged, as in the check.
   Trust trust = Trust::posture;
   /// Shapes whose clearances are watched; null if there is none.
@@ -70,8 +68,7 @@ struct CorrectionSpec {
       true;  ///< low soles are level and over their places, and the others are high enough
   double dcm_slack = repair_policy::dcm::kSlack;  ///< half the band of the DCM [m]
   double zmp_slack =
-      repair_policy::dcm::kZmpSlack;     ///< half the band of the ZMP while the DCM is held [m]
-  std::array<bool, 3> planned_cog = {};  ///< axes of the COG that stay near the commanded one
+      repair_policy::dcm::kZmpSlack;  ///< half the band of the ZMP while the DCM is held [m]
   std::vector<TimeWindow>
       wrong_plan;  ///< windows in which the commanded COG or ZMP is at fault [s]
 

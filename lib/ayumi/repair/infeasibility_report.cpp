@@ -215,18 +215,18 @@ void solve_relaxed(RepairState& state) {
   const double violation = state.result.constraint_violation;
   note_work(state, relaxed, solution);
   state.result.constraint_violation = violation;
-  state.relaxation_cut_short = solution.status == NlpStatus::iteration_limit;
+  const bool cut_short = solution.status == NlpStatus::iteration_limit;
+  if (cut_short)
+    state.cut_short_by = solution.iterations >= options.max_iterations ? "iterations" : "work";
   // If even the nearby motion with the smallest violation violates a limit, no nearby motion
   // passes. A search that was stopped early does not show this.
   if (solution.status != NlpStatus::failed)
-    state.status = state.relaxation_cut_short ? NlpStatus::iteration_limit : NlpStatus::infeasible;
+    state.status = cut_short ? NlpStatus::iteration_limit : NlpStatus::infeasible;
   take(state, problem.track(solution.x.head(problem.variable_count())));
   // If the search was stopped early, its motion has errors that the search itself made. Then the
   // errors of the given motion show what prevents a repair.
   RepairResult& result = state.result;
-  if (!state.relaxation_cut_short &&
-      total_violation(result.check) < total_violation(state.as_given.check))
-    return;
+  if (!cut_short && total_violation(result.check) < total_violation(state.as_given.check)) return;
   result.correction = state.as_given.correction;
   result.series = state.as_given.series;
   result.check = state.as_given.check;

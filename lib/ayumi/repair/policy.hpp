@@ -473,6 +473,29 @@ inline constexpr double kFarOff = 0.01;
 inline constexpr double kReaches[] = {0.02, 0.06, 0.12, 0.2, 0.3, 0.4, 0.6, 0.8};
 }  // namespace guess
 
+// ---- motions that are made from a plan alone
+
+namespace generation {
+/// Heights of the COG that are tried where no key gives one, as shares of the default height.
+/// Chosen: the first height with which all postures are possible bends the legs no more than
+/// needed, and below the last one a walk is a crouch that an author would ask for with a key. Test:
+/// FromScratch.LegsThatAreTooShortForThePlanAreHelped.
+inline constexpr double kHeights[] = {0.96, 0.92, 0.88, 0.84, 0.8};
+}  // namespace generation
+
+// ---- motions with jumps or noise
+
+namespace rough {
+/// Time before and after a jump in which a smooth curve replaces the motion, in intervals of its
+/// knots. Chosen: three control points at each end are determined by the motion outside, and as
+/// many are left to lead from one side of the jump to the other. Test: RoughMotion.*.
+inline constexpr double kAround = 5;
+/// The motion is made smooth only if the violations of rates and forces then fall below this share.
+/// Chosen: noise and jumps exceed limits by factors, but a smooth curve also changes what is right.
+/// Test: RoughMotion.*.
+inline constexpr double kGain = 0.5;
+}  // namespace rough
+
 // ---- reasons that prevent a repair
 
 namespace infeasible {

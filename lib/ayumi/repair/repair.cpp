@@ -9,12 +9,14 @@
 #include <algorithm>
 
 #include "ayumi/base/text.hpp"
+#include "ayumi/motion/smooth_motion.hpp"
 #include "ayumi/repair/infeasibility_report.hpp"
 #include "ayumi/repair/overlapping_feet.hpp"
 #include "ayumi/repair/repair_rounds.hpp"
 #include "ayumi/repair/repair_setup.hpp"
 #include "ayumi/repair/repair_state.hpp"
 #include "ayumi/repair/robustness_cost.hpp"
+#include "ayumi/repair/rough_motion.hpp"
 #include "ayumi/repair/tighten_to_check_limits.hpp"
 
 namespace ayumi {
@@ -33,7 +35,6 @@ void set_up(RepairState& state) {
   take(state, nothing_moves.track(Eigen::VectorXd()));
   state.as_given = state.result;
   state.flight = flight_is_at_fault(state.result.check);
-  if (state.options.generate) return;
   const double finest = policy::knots::kFewestSamples * state.series.dt;
   state.spec.spacing =
       std::min(state.spec.spacing, spacing_of_faults(state.series, state.result.check, finest));
@@ -56,10 +57,10 @@ void give_reasons(RepairState& state) {
     result.reasons.push_back(count - named == 1
                                  ? "there is 1 more error"
                                  : "there are " + std::to_string(count - named) + " more errors");
-  if (state.relaxation_cut_short)
-    result.reasons.push_back(
-        "the search stopped at its limit of iterations, so it is not known whether a "
-        "repair exists; the errors above are those of the given motion");
+  if (!state.cut_short_by.empty())
+    result.reasons.push_back("the search stopped at its limit of " + state.cut_short_by +
+                             ", so it is not known whether a repair exists; the errors above are "
+                             "those of the given motion");
 }
 
 void measure_change(RepairState& state) {
@@ -87,17 +88,10 @@ void require_knot_spacing(const RepairOptions& options, double dt) {
                              " s must be above two samples (" + text::exact(2 * dt) + " s)");
 }
 
-}  // namespace
-
-RepairResult repair(const RobotModel& model, const CommandSeries& series,
-                    const RepairOptions& options, const Progress& progress) {
-  require_knot_spacing(options, series.dt);
-  RepairState state = repair_state(model, series, options, progress);
-  if (state.result.check.consistent && !options.generate) {
-    state.result.status = RepairStatus::already_consistent;
-    return state.result;
-  }
+RepairResult repair_to_the_end(RepairState& state) {
   set_up(state);
+  const RobotModel& model = state.model;
+  const CommandSeries& series = state.series;
   state.overlap = overlapping_feet(model, series, state.result.before);
   if (state.overlap || locked_out(state.spec, state.result.check))
     state.status = NlpStatus::infeasible;
@@ -105,9 +99,39 @@ RepairResult repair(const RobotModel& model, const CommandSeries& series,
     solve_rounds(state);
   const bool solved_any = state.result.work.rounds > 0;
   if (solved_any && !state.result.check.consistent && !state.result.partial) solve_relaxed(state);
-  if (solved_any && is_done(state) && !state.flight && !options.generate) tighten(state);
+  if (solved_any && is_done(state) && !state.flight) tighten(state);
   conclude(state);
   return state.result;
+}
+
+// The repair of the motion that smooth curves have made of `series` in these windows.
+RepairResult repair_smoothed(const RobotModel& model, const CommandSeries& series,
+                             const std::vector<SmoothWindow>& windows, const RepairOptions& options,
+                             const Progress& progress) {
+  const CommandSeries smooth = smoothed(series, windows);
+  RepairState state = repair_state(model, smooth, options, progress);
+  RepairResult result = repair_to_the_end(state);
+  result.correction.smooth = windows;
+  result.moved = motion_change(model, series, result.series);
+  return result;
+}
+
+}  // namespace
+
+RepairResult repair(const RobotModel& model, const CommandSeries& series,
+                    const RepairOptions& options, const Progress& progress) {
+  require_knot_spacing(options, series.dt);
+  RepairState state = repair_state(model, series, options, progress);
+  const ConsistencyReport before = state.result.check;
+  if (before.consistent) {
+    state.result.status = RepairStatus::already_consistent;
+    return state.result;
+  }
+  const std::vector<SmoothWindow> windows = rough_windows(model, series, before, options);
+  if (windows.empty()) return repair_to_the_end(state);
+  RepairResult result = repair_smoothed(model, series, windows, options, progress);
+  result.before = before;
+  return result;
 }
 
 }  // namespace ayumi

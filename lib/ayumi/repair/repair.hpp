@@ -35,12 +35,6 @@ struct RandomStart {
   std::uint64_t seed = 0;
 };
 
-/// For a series that is a plan (sample_plan) and not yet a motion: the feet are moved to their
-/// places in the plan, and the COG stays near the plan along the axes that count.
-struct Generation {
-  std::array<bool, 3> cog = {};  ///< whether the axes x, y, z of the COG count
-};
-
 struct RepairOptions {
   CheckOptions check;
   std::vector<std::string> locked_joints;  ///< joints that stay bit-identical
@@ -66,7 +60,6 @@ struct RepairOptions {
   bool mumps = false;  ///< whether MUMPS solves the linear systems, for comparison
   /// Random start of the first program, to test how little depends on it.
   RandomStart random_start;
-  std::optional<Generation> generate = {};
   /// This function is called with the check of the given motion, and of every motion that is found
   /// after that. Its errors are the ones that the repair has to remove. See remaining_errors().
   std::function<void(const ConsistencyReport& check)> on_check = {};

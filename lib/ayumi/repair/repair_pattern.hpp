@@ -15,8 +15,10 @@ RepairOptions preferred_options(const Pattern& pattern);
 RepairResult repair(const RobotModel& model, const Pattern& pattern, const CommandSeries& series,
                     const RepairOptions& options, const Progress& progress = {});
 
-/// Makes a motion from the plan of a pattern (sample_plan) alone: the same program finds all
-/// joints. The axes of the COG for which the pattern has keys are goals.
+/// Makes a motion from the plan of a pattern alone: the repair of `plan`, which sample_plan() made
+/// of the pattern. If it fails the check, other starts are tried: the COG follows the ZMP in place
+/// of its keys, and, without a key of its height, it is lower. The start with the smallest
+/// violations is repaired. One that passes the check is the result as it is.
 RepairResult generate(const RobotModel& model, const Pattern& pattern, const CommandSeries& plan,
                       const RepairOptions& options, const Progress& progress = {});
 

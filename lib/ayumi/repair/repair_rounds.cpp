@@ -49,9 +49,7 @@ void choose_windows(RepairState& state, RoundMemory& memory) {
   for (const Finding& f : now)
     if (f.severity == Severity::error && memory.round > 0)
       state.spec.extra_times.insert(state.spec.extra_times.end(), {f.begin, f.at, f.end});
-  state.spec.windows = state.options.generate
-                           ? std::vector<TimeWindow>{{0, state.series.duration()}}
-                           : windows_around(memory.findings, memory.pad);
+  state.spec.windows = windows_around(memory.findings, memory.pad);
   add_near_pairs(state.model, state.result.series, state.collisions, state.spec.near_pairs);
 }
 

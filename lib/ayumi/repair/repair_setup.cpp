@@ -170,11 +170,6 @@ CorrectionSpec repair_spec(const RobotModel& model, const CommandSeries& series,
   spec.zmp_margin = std::min(spec.safe_margin, least + policy::kFirstBackoff.zmp);
   spec.swing_goals = options.safety > 0;
   if (!spec.swing_goals) spec.safe_margin = spec.zmp_margin;
-  if (options.generate) {
-    spec.planned_feet = true;
-    spec.planned_cog = options.generate->cog;
-    spec.swing_goals = false;  // the plan already says where and how high the foot is
-  }
   return spec;
 }
 

@@ -166,7 +166,7 @@ void solve_program(RepairState& state, const std::string& stage, double toleranc
   const CorrectionProblem& problem = state.problem.emplace(state.model, state.series, spec);
   Nlp hard = problem.nlp();
   const VectorXd usual =
-      spec.initial.size() > 0 || state.options.generate
+      spec.initial.size() > 0
           ? hard.start
           : initial_guess(problem, hard, state.model, state.series, state.result.before.findings);
   const bool at_random = first && state.options.random_start.size > 0;

@@ -46,7 +46,8 @@ struct RepairState {
   RepairResult result = {};
   RepairResult as_given = {};                   ///< the motion itself, with its own COG and ZMP
   std::optional<CorrectionTrack> passing = {};  ///< an earlier result that passes the check
-  bool relaxation_cut_short = false;  ///< whether the limit of iterations stopped the search
+  /// The limit that stopped the search for the reasons, in words; empty if none did.
+  std::string cut_short_by = {};
   std::optional<OverlappingFeet> overlap =
       {};  ///< feet that are planned at the same place, in which case there is no solution
 };

@@ -44,6 +44,8 @@ Pattern retimed(const RobotModel& model, const Pattern& pattern, double scale) {
   if (result.correction) {
     result.correction->begin *= scale;
     result.correction->spacing *= scale;
+    for (SmoothWindow& window : result.correction->smooth)
+      window = {scale * window.begin, scale * window.end, scale * window.spacing};
   }
   return result;
 }

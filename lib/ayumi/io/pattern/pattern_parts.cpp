@@ -261,6 +261,15 @@ CorrectionTrack read_correction(const JsonNode& node) {
     track.coefficients.row(static_cast<Eigen::Index>(r)) =
         Eigen::Map<const Eigen::RowVectorXd>(values.data(), width);
   }
+  if (const auto smooth = node.find("smooth"))
+    for (const JsonNode& window : smooth->items()) {
+      const std::vector<double> values = window.numbers();
+      if (values.size() != 3 || !(values[0] < values[1]) || !(values[2] > 0))
+        window.complain(
+            "expected [begin, end, spacing] in seconds, with begin below end and a "
+            "spacing above 0");
+      track.smooth.push_back({values[0], values[1], values[2]});
+    }
   return track;
 }
 

@@ -45,7 +45,7 @@ const std::map<std::string, std::vector<std::string>>& pattern_keys() {
         "force",    "torque", "shape",    "mass",    "frequency", "roll",    "pitch",     "shift",
         "friction", "foot",   "position", "radius",  "height",    "latency", "gyro",      "load",
         "joint",    "offset", "coulomb",  "viscous", "share"}},
-      {"correction", {"begin", "spacing", "columns", "coefficients"}},
+      {"correction", {"begin", "spacing", "columns", "coefficients", "smooth"}},
       {"repair", {"lock", "weights", "trust", "margin", "safety"}},
       {"lock", {"joints", "feet", "keyframes", "windows"}},
       {"study", {"$schema", "format", "name", "units", "uncertainty", "sweep"}},

@@ -299,6 +299,14 @@ std::string correction_text(const CorrectionTrack& track) {
   members.add("begin", number(track.begin)).add("spacing", number(track.spacing));
   members.add("columns", columns.array());
   members.add("coefficients", track.coefficients.rows() == 0 ? "[]" : rows.lines('[', ']', "    "));
+  Members smooth;
+  for (const SmoothWindow& window : track.smooth)
+    smooth.item(Members()
+                    .item(number(window.begin))
+                    .item(number(window.end))
+                    .item(number(window.spacing))
+                    .array());
+  if (!track.smooth.empty()) members.add("smooth", smooth.array());
   return members.lines('{', '}', "  ");
 }
 
