@@ -25,5 +25,13 @@ inline constexpr std::chrono::milliseconds kFileClockStep(30);
 /// A file that is missing for longer counts as removed. Chosen: editors that replace a file do so
 /// within 0.1 s.
 inline constexpr std::chrono::milliseconds kFileGone(500);
+/// A text that is no JSON counts only after it has stayed the same for the first of these times,
+/// because an editor may empty a file and write it in several steps; a file that changes all the
+/// time counts after the second one. Chosen: editors write within some milliseconds.
+inline constexpr std::chrono::milliseconds kFileWritten(100), kFileBusy(500);
+
+/// Waits while an editor writes a JSON file, as described for kFileWritten. Returns at once if the
+/// text is JSON, or if there is no file.
+void await_written(const std::filesystem::path& file);
 
 }  // namespace ayumi::app

@@ -149,7 +149,9 @@ void AuthorSession::follow() {
       const bool look_again =
           read_at_ && std::chrono::steady_clock::now() - *read_at_ > kFileClockStep;
       if (look_again) read_at_.reset();
-      if (!same || (look_again && read_file(setting_.file) != view()->text)) refresh();
+      if (same && !(look_again && read_file(setting_.file) != view()->text)) continue;
+      await_written(setting_.file);
+      refresh();
     } catch (const Error&) {  // the file is missing for a moment; the next check finds it
     }
   }

@@ -374,6 +374,7 @@ void watch(Context& context, const CheckCommand& options) {
     check_once(context, options, file, errors);
     await_change(files, seen, contents, read_at);
     await_return(file);
+    await_written(file);
     if (!shows_colours()) context.print("\n");
   }
 }

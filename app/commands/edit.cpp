@@ -173,36 +173,39 @@ void bake(Context& context, const EditCommand& options) {
                Json{{"rows", input.series.samples.size()}});
 }
 
-// The lines of the author's text that name a side by words that no edit changes, from line `first`
+// The lines of a pattern's text that name a side by words that no edit changes, from line `first`
 // to line `last`.
-std::vector<int> unchanged_sides(const Given& given, int first = 1,
+std::vector<int> unchanged_sides(const RobotModel& robot, const std::string& text, int first = 1,
                                  int last = std::numeric_limits<int>::max()) {
-  const RobotModel& robot = given.task.robot;
   const MirrorMap map = mirror_map(robot);
   std::set<std::string> sided;
   for (size_t dof = 0; dof < map.dof.size(); ++dof)
     if (map.dof[dof] != static_cast<int>(dof)) sided.insert(robot.dofs()[dof].name);
-  std::vector<int> lines = lines_with_sides(given.text, sided);
+  std::vector<int> lines = lines_with_sides(text, sided);
   std::erase_if(lines, [&](int line) { return line < first || line > last; });
   return lines;
 }
 
-std::string sides_in_words(const Given& given, const std::vector<int>& lines) {
+std::string sides_in_words(const std::string& file, const std::vector<int>& lines) {
   if (lines.empty()) return "";
   std::vector<std::string> numbers;
   for (const int line : lines) numbers.push_back(std::to_string(line));
   return std::string("  not mirrored: the words that name a side in line") +
-         (lines.size() == 1 ? " " : "s ") + text::join(numbers, ", ") + " of " +
-         given.task.pattern.file + " (comments and names)\n";
+         (lines.size() == 1 ? " " : "s ") + text::join(numbers, ", ") + " of " + file +
+         " (comments and names)\n";
 }
 
 void mirror(Context& context, const EditCommand& options) {
   const Given given = load(context, options);
   const Task& input = given.task;
   const Edited edited = in_own_text(options, given, mirrored(input.robot, input.pattern));
-  const std::vector<int> sides = unchanged_sides(given);
+  // A pattern that is written anew has only its names, and no comments.
+  const bool kept = !edited.text.empty();
+  const std::vector<int> sides =
+      unchanged_sides(input.robot, kept ? given.text : pattern_text(edited.pattern));
   write_edited(context, options, edited, check_edited(context, options, input, edited),
-               sides_in_words(given, sides), Json{{"sides_not_mirrored", sides}});
+               sides_in_words(kept ? input.pattern.file : options.out, sides),
+               Json{{"sides_not_mirrored", sides}});
 }
 
 std::string in_words(double scale, const ConsistencyReport& before, const ForceRange& force_before,
@@ -603,19 +606,20 @@ void edit_key(Context& context, const EditCommand& options) {
   const Task& input = given.task;
   const Edited edited =
       in_own_text(options, given, with_key_edited(input.robot, input.pattern, key));
-  // A copy has no comments.
+  // A copy, and a pattern that is written anew, have no comments.
   std::vector<int> sides;
-  if (key.mirror && !key.copy) {
+  if (key.mirror && !key.copy && !edited.text.empty()) {
     const auto moved =
         std::min_element(input.pattern.keyframes.begin(), input.pattern.keyframes.end(),
                          [&](const Keyframe& a, const Keyframe& b) {
                            return std::abs(a.t - key.at) < std::abs(b.t - key.at);
                          });
     if (const auto at = find_value(given.text, moved->pointer))
-      sides = unchanged_sides(given, line_at(given.text, at->begin), line_at(given.text, at->end));
+      sides = unchanged_sides(input.robot, given.text, line_at(given.text, at->begin),
+                              line_at(given.text, at->end));
   }
   write_edited(context, options, edited, check_edited(context, options, input, edited),
-               sides_in_words(given, sides),
+               sides_in_words(input.pattern.file, sides),
                Json{{"at_s", key.at},
                     {"to_s", key.to ? Json(*key.to) : Json(nullptr)},
                     {"copy", key.copy},

@@ -351,6 +351,23 @@ TEST_F(AuthorServer, ShowsTheLastOfManyQuickSaves) {
             last);
 }
 
+// An editor may empty the file and write it a moment later. The empty text is not shown, and Undo
+// does not lead back to it.
+TEST_F(AuthorServer, AFileThatIsWrittenInStepsIsReadWhenItIsWhole) {
+  const Server server(file);
+  for (int i = 0; i < 5; ++i) {
+    const std::string text = replaced("hoap1_walk", "save_" + std::to_string(i));
+    write(file, "");
+    std::this_thread::sleep_for(30ms);
+    write(file, text.substr(0, 300));
+    std::this_thread::sleep_for(30ms);
+    write(file, text);
+    const OrderedJson state =
+        server.state_when([&](const OrderedJson& now) { return now["text"] == text; });
+    EXPECT_EQ(state["undo"], i + 1) << "one step for each save";
+  }
+}
+
 TEST_F(AuthorServer, WritesEditsIntoTheTextAndTakesThemBack) {
   shorten();
   const Server server(file);

@@ -269,6 +269,16 @@ TEST_F(Edit, SaysWhichWordsAreNotMirrored) {
   EXPECT_EQ(
       lines({"edit", "key", "lift.json", "--at", "0.5", "--mirror", "-o", "j.json", "--json"}),
       Json::array());
+  // One round of a block cannot be mirrored alone, so the comment is lost.
+  write(folder / "nods.json", R"({ "format": "ayumi.pattern/1", "robot": "humanoid30",
+  "units": { "angle": "deg" }, "phases": [{ "until": 6, "support": "both" }],
+  "keyframes": [{ "t": 0.5, "joints": { "head_yaw": 0 } },
+    { "repeat": 2, "keyframes": [
+      { "after": 1, "joints": { "head_yaw": 20 } }, // look left
+      { "after": 1, "joints": { "head_yaw": 0 } }] }] })");
+  EXPECT_EQ(
+      lines({"edit", "key", "nods.json", "--at", "1.5", "--mirror", "-o", "n.json", "--json"}),
+      Json::array());
 }
 
 // The text of a pattern from standard input stays like that of a file.
