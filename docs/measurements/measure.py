@@ -350,7 +350,7 @@ def pushes_walks():
         ("`humanoid30`, turning 8° a step", "humanoid30", ["--turn", 8]),
     ]:
         made = WORK / f"walk_{len(lines)}.json"
-        ayumi("new", "walk", "--robot", robot, *words, "-o", made, "--force")
+        ayumi("new", "walk", "--robot", robot, *words, "--allow-inconsistent", "-o", made, "--force")
         profile = (*FOUR, *(("--profile", "hoap1-strong") if robot == "hoap1" else ()))
         fixed = push_study(made, *profile)
         moved = push_study(made, *profile, "--gain", "step=1")

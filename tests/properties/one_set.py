@@ -51,8 +51,9 @@ class Generator:
         key = " ".join(words)
         if key not in self.made:
             path = os.path.join(self.folder, "base.json")
-            subprocess.run([self.program, "new", *words, "-o", path, "--force", "-q"], check=True,
-                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            subprocess.run([self.program, "new", *words, "--allow-inconsistent", "-o", path,
+                            "--force", "-q"], check=True, stdout=subprocess.DEVNULL,
+                           stderr=subprocess.DEVNULL)
             with open(path) as file:
                 self.made[key] = without_comments(file.read())
         return json.loads(self.made[key])
