@@ -15,8 +15,10 @@ namespace ayumi::test {
 namespace {
 
 Pattern walk_with_lift(double lift) {
-  Pattern pattern = walk_pattern(hoap1(), {.steps = 2, .lift = lift});
+  Pattern pattern = walk_pattern(hoap1(), {.steps = 2});
   pattern.robot = "hoap1";
+  for (Phase& phase : pattern.phases)
+    if (phase.swing) phase.swing->lift = lift;
   return pattern;
 }
 
