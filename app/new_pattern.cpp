@@ -1,5 +1,6 @@
 #include "new_pattern.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "ayumi/base/counted.hpp"
@@ -15,22 +16,27 @@ namespace {
 
 /// If the pattern names no profile and the robot's first one is too weak, the first profile that is
 /// strong enough becomes that of the pattern. Returns whether the check finds the pattern
-/// consistent, and prints its findings.
-bool choose_profile(const Context& context, Task& task) {
+/// consistent. What is found is printed; a choice of a profile only if the pattern will be written.
+bool choose_profile(const Context& context, Task& task, bool written_anyway) {
   Judgement judged = judge(task);
-  const ActuatorNeed need = judged.motion_need;
-  if (task.pattern.profile.empty() && !need.sufficient.empty()) {
+  const ActuatorNeed need = judged.need();
+  const bool chooses = task.pattern.profile.empty() && !need.sufficient.empty();
+  if (chooses) {
     task.profile = task.pattern.profile = need.sufficient.front();
     judged = judge(task);
-    context.print("the pattern names the profile " + task.profile + ", because " + need.text +
-                  "\n");
   } else if (!need.text.empty()) {
     context.print(need.text + "\n");
   }
+  if (chooses && (judged.good() || written_anyway))
+    context.print("the pattern names the profile " + task.profile + ", because " + need.text +
+                  "\n");
   if (judged.good()) return true;
-  const Finding& first = judged.report.findings.front();
-  context.print(std::string("the check finds the new pattern inconsistent: ") +
-                finding_with_hint(first) + "\n");
+  const std::vector<Finding>& findings = judged.report.findings;
+  const auto error = std::find_if(findings.begin(), findings.end(),
+                                  [](const Finding& f) { return f.severity == Severity::error; });
+  // A goal of VIIP that is too strong for the actuators is not a finding of the motion.
+  context.print("the check finds the new pattern inconsistent: " +
+                (error != findings.end() ? finding_with_hint(*error) : judged.need().text) + "\n");
   return false;
 }
 
@@ -66,7 +72,8 @@ bool write_new_pattern(Context& context, const RobotModel& model, Pattern patter
     }
   }();
   const CommandSeries& series = task.series;
-  const bool consistent = !model.has_soles() || choose_profile(context, task);
+  const bool consistent =
+      !model.has_soles() || choose_profile(context, task, file.allow_inconsistent);
   if (!consistent && !file.allow_inconsistent) {
     context.print(
         "nothing is written. With --allow-inconsistent, the pattern is written nevertheless, for "
