@@ -63,6 +63,7 @@ bool passes(const RobotModel& model, const JumpParameters& p, const std::string&
 // The jump of lowest height that comes nearest to passing, among those that were tried.
 struct Nearest {
   JumpParameters jump;
+  std::string profile;
   Obstacle obstacle;
 };
 
@@ -143,7 +144,7 @@ JumpParameters highest_jump(const RobotModel& model, JumpParameters p, const std
       const Obstacle found = obstacle(model, p, profile);
       if (!found.text.empty()) {
         if (best.height == 0 && (!nearest || found.severity < nearest->obstacle.severity))
-          nearest = Nearest{p, found};
+          nearest = Nearest{p, profile, found};
         continue;
       }
       while (high < scaled.cog_height && good(2 * high)) high = low = 2 * high;
@@ -177,7 +178,9 @@ std::string limit_text(const std::optional<Nearest>& nearest) {
   const JumpParameters& jump = nearest->jump;
   return "The jump that comes nearest rises by " + text::brief(1e3 * jump.height, 2) +
          " mm from a COG height of " + text::brief(jump.cog_height, 3) + " m with a stoop of " +
-         text::brief(1e3 * jump.stoop, 2) + " mm. Its limit is " + nearest->obstacle.text;
+         text::brief(1e3 * jump.stoop, 2) + " mm" +
+         (nearest->profile.empty() ? "" : ", with the actuators " + nearest->profile) +
+         ". Its limit is " + nearest->obstacle.text;
 }
 
 std::vector<std::string> comments_of(const JumpParameters& p) {

@@ -323,7 +323,7 @@ class Trial:
     def stands(self, name, plant):
         """Whether the robot stands after the motion in open loop; None if there is no such plant."""
         code, out, err = self.run("simulate", name, "-o", "run_" + plant, "--controller", "none",
-                                  "--plant", plant, "--light", "--force", "--json", "-q")
+                                  "--scenario", "none", "--plant", plant, "--force", "--json", "-q")
         if code == 2 and plant == "mujoco":
             return None
         self.must(code in (0, 1), f"simulate --plant {plant} ended with {code}", err)

@@ -8,6 +8,7 @@
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/number_slips.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/check/hypotheses/examined_pattern.hpp"
 
 namespace ayumi {
 
@@ -19,8 +20,6 @@ constexpr double kSameDuration = 1e-3;
 // No phase and no segment between two keyframes becomes shorter than this [s]. Chosen: ten times
 // less than the shortest steps of small robots.
 constexpr double kShortest = 0.02;
-
-std::string in_seconds(double t) { return text::brief(t, 5) + " s"; }
 
 /// A block that repeats, after its rounds were expanded: items of the list that follow each other.
 struct Block {
@@ -143,8 +142,9 @@ class Fit {
   // ---- another length of a round
 
   std::string lengths() const {
-    return "the phases of a round of " + phases_.place + " last " + in_seconds(phases_.period) +
-           ", but the keyframes of " + keys_.place + " repeat every " + in_seconds(keys_.period);
+    return "the phases of a round of " + phases_.place + " last " +
+           hypotheses::seconds(phases_.period) + ", but the keyframes of " + keys_.place +
+           " repeat every " + hypotheses::seconds(keys_.period);
   }
 
   // -1 if one wrong digit explains the difference; otherwise the relative difference.
@@ -161,8 +161,9 @@ class Fit {
       const double meant = lasts + keys_.period - phases_.period;
       if (meant < kShortest) continue;
       add(
-          pattern_.phases[phase].pointer, "the phase lasts " + in_seconds(lasts) + "; " + lengths(),
-          "with a duration of " + in_seconds(meant),
+          pattern_.phases[phase].pointer,
+          "the phase lasts " + hypotheses::seconds(lasts) + "; " + lengths(),
+          "with a duration of " + hypotheses::seconds(meant),
           [block = phases_, j, by = meant - lasts](Pattern& p) {
             double later = 0;
             for (size_t i = block.first; i < p.phases.size(); ++i) {
@@ -186,8 +187,9 @@ class Fit {
       if (meant < kShortest) continue;
       add(
           pattern_.keyframes[key].pointer,
-          "the keyframe comes " + in_seconds(lasts) + " after the keyframe before it; " + lengths(),
-          "with " + in_seconds(meant) + " between these two keyframes",
+          "the keyframe comes " + hypotheses::seconds(lasts) + " after the keyframe before it; " +
+              lengths(),
+          "with " + hypotheses::seconds(meant) + " between these two keyframes",
           [block = keys_, j, by = meant - lasts](Pattern& p) {
             double later = 0;
             for (size_t i = block.first; i < p.keyframes.size(); ++i) {
@@ -206,10 +208,10 @@ class Fit {
     const double late = keys_.begin - phases_.begin, rounds = std::round(late / keys_.period);
     if (rounds == 0 || std::abs(late - rounds * keys_.period) > kSameDuration) return;
     add(keys_.place,
-        "the repeated keyframes begin at " + in_seconds(keys_.begin) +
-            ", but the repeated phases begin at " + in_seconds(phases_.begin) +
-            "; one round lasts " + in_seconds(keys_.period),
-        "with these and all later keyframes " + in_seconds(std::abs(late)) +
+        "the repeated keyframes begin at " + hypotheses::seconds(keys_.begin) +
+            ", but the repeated phases begin at " + hypotheses::seconds(phases_.begin) +
+            "; one round lasts " + hypotheses::seconds(keys_.period),
+        "with these and all later keyframes " + hypotheses::seconds(std::abs(late)) +
             (late > 0 ? " earlier," : " later,"),
         [first = keys_.first, late](Pattern& p) {
           for (size_t i = first; i < p.keyframes.size(); ++i) p.keyframes[i].t -= late;

@@ -116,7 +116,7 @@ std::vector<Hypothesis> paces(const ExaminedPattern& of) {
                             slight = {1.03, 0.9, 1.1, 0.8, 1.25};
   for (const double factor : of.found.slight ? slight : usual)
     made.push_back({Rank::pace,
-                    {"/phases", "the motion takes " + seconds(of.pattern.duration()),
+                    {"/phases", "the motion takes " + hypotheses::seconds(of.pattern.duration()),
                      "with all times multiplied by " + text::brief(factor)},
                     [&of, factor](Pattern& p) { p = retimed(of.model, p, factor); }});
   return made;

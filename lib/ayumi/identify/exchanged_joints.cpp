@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "ayumi/base/text.hpp"
+#include "ayumi/identify/lost_rows.hpp"
 #include "ayumi/identify/recording_checks.hpp"
 
 namespace ayumi {
@@ -23,9 +24,9 @@ constexpr double kFarBetter = 0.25;
 // Time between the compared rows [s]. Chosen: joints of walks move for tenths of a second.
 constexpr double kExchangeStep = 0.01;
 
-// Number of times from the soonest to the latest answer that are tried. Chosen: the answer of a
-// servo is then at most 4 ms from one of them.
-constexpr int kAnswers = 5;
+// Time between two answers that are tried [s]. Chosen: the answer of a servo is then at most 4 ms
+// from one of them, in which a joint of a walk (2 rad/s) moves by half a degree.
+constexpr double kAnswerStep = 0.008;
 
 // Both tables at the same times; columns are joints.
 struct Rows {
@@ -82,9 +83,10 @@ std::vector<std::vector<Index>> exchanged_joints(const RobotModel& model, const 
   const Index dofs = command.theta.cols();
   // distance(a, b): of the angle of a from the command of b, at the time that fits best.
   MatrixXd distance = MatrixXd::Constant(dofs, dofs, HUGE_VAL);
-  for (int i = 0; i < kAnswers; ++i) {
-    const Rows rows =
-        rows_of(command, measured, soonest + (latest - soonest) * i / (kAnswers - 1), begin, end);
+  const int steps = std::max(0, static_cast<int>(std::ceil((latest - soonest) / kAnswerStep)));
+  for (int i = 0; i <= steps; ++i) {
+    const Rows rows = rows_of(command, measured,
+                              soonest + (latest - soonest) * i / std::max(1, steps), begin, end);
     if (rows.command.rows() < 2) continue;
     for (const Index a : joints)
       for (const Index b : joints)

@@ -6,11 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "ayumi/demand/contact_plan.hpp"
-#include "ayumi/dynamics/inverse_kinematics.hpp"
-#include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/random.hpp"
-#include "ayumi/math/rotation.hpp"
 #include "ayumi/math/windows.hpp"
 
 namespace ayumi {
@@ -72,72 +68,6 @@ class StraightLine {
   long begin_ = 0, end_ = 0;
 };
 
-// Each control point of a cubic spline is computed from the values at three knots; row i of
-// `values` is the value at knot i - 1.
-MatrixXd through_knots(const MatrixXd& values) {
-  const Index rows = values.rows();
-  MatrixXd points = MatrixXd::Zero(rows, values.cols());
-  for (Index i = 1; i + 1 < rows; ++i)
-    points.row(i) = (8 * values.row(i) - values.row(i - 1) - values.row(i + 1)) / 6;
-  return points;
-}
-
-// The planned places of the soles as a change of the soles of the motion. A supporting sole comes
-// to its place; in a swing, the changes before and after it are blended.
-class SolePlaces {
- public:
-  SolePlaces(const RobotModel& model, const CommandSeries& series)
-      : model_(model), series_(series), plan_(contact_plan(series)), data_(model) {}
-
-  std::array<Eigen::Isometry3d, 2> at(int k) {
-    std::array<Eigen::Isometry3d, 2> places;
-    for (const Side side : {Side::left, Side::right})
-      places[static_cast<size_t>(side)] = place(side, k);
-    return places;
-  }
-
- private:
-  struct Change {
-    Eigen::Vector3d shift = Eigen::Vector3d::Zero(), turn = Eigen::Vector3d::Zero();
-  };
-
-  Eigen::Isometry3d sole(Side side, int k) {
-    update_positions(model_, series_.samples[static_cast<size_t>(k)].state, data_);
-    return sole_pose(model_, data_, side);
-  }
-
-  Change change_at(Side side, int k, const ContactInterval& contact) {
-    const Eigen::Isometry3d now = sole(side, k);
-    return {contact.sole.translation() - now.translation(),
-            log_rotation(Eigen::Quaterniond(
-                Eigen::Matrix3d(contact.sole.linear() * now.linear().transpose())))};
-  }
-
-  Eigen::Isometry3d place(Side side, int k) {
-    const auto s = static_cast<size_t>(side);
-    const std::vector<ContactInterval>& intervals = plan_.intervals[s];
-    const auto i = static_cast<size_t>(plan_.index[s][static_cast<size_t>(k)]);
-    const ContactInterval& here = intervals[i];
-    if (here.contact) return here.sole;
-    const Change none;
-    const Change before = i > 0 ? change_at(side, here.first, intervals[i - 1]) : none;
-    const Change after =
-        i + 1 < intervals.size() ? change_at(side, here.last, intervals[i + 1]) : none;
-    const double u = static_cast<double>(k - here.first) /
-                     static_cast<double>(std::max(1, here.last - here.first));
-    Eigen::Isometry3d pose = sole(side, k);
-    pose.translation() += (1 - u) * before.shift + u * after.shift;
-    pose.linear() =
-        exp_rotation((1 - u) * before.turn + u * after.turn).toRotationMatrix() * pose.linear();
-    return pose;
-  }
-
-  const RobotModel& model_;
-  const CommandSeries& series_;
-  const ContactPlan plan_;
-  RobotData data_;
-};
-
 // The violation of the rows of soles and clearances, which are the least linear rows.
 struct LeastLinearViolation {
   double sum = 0, worst = 0;
@@ -185,39 +115,17 @@ MatrixXd straight_line_guess(const RobotModel& model, const CommandSeries& serie
     for (const int dof : joints_at_fault(model, f))
       windows[dof].emplace_back(f.begin - reach, f.end + reach);
   }
-  MatrixXd values = MatrixXd::Zero(rows, model.velocity_count());
+  MatrixXd result = MatrixXd::Zero(rows, model.velocity_count());
   for (const auto& [dof, of_joint] : windows)
     for (const TimeWindow& window : merged(of_joint)) {
       const StraightLine line(series, dof, window);
-      for (Index i = 0; i < rows; ++i)
-        values(i, 6 + dof) += line.at(static_cast<double>(i - 1) * spacing);
+      // Each control point is computed from the values at three knots.
+      for (Index i = 0; i < rows; ++i) {
+        const double t = static_cast<double>(i - 1) * spacing;
+        result(i, 6 + dof) += (8 * line.at(t) - line.at(t - spacing) - line.at(t + spacing)) / 6;
+      }
     }
-  return through_knots(values);
-}
-
-MatrixXd placed_soles_guess(const RobotModel& model, const CommandSeries& series, double spacing,
-                            Index rows) {
-  MatrixXd values = MatrixXd::Zero(rows, model.velocity_count());
-  const InverseKinematics ik(model, series.samples.front().state.theta);
-  SolePlaces places(model, series);
-  RobotData data(model);
-  const int last = static_cast<int>(series.samples.size()) - 1;
-  for (Index i = 1; i + 1 < rows; ++i) {
-    const int k = std::clamp(
-        static_cast<int>(std::lround(static_cast<double>(i - 1) * spacing / series.dt)), 0, last);
-    const RobotState& given = series.samples[static_cast<size_t>(k)].state;
-    update_positions(model, given, data);
-    PostureTarget target;
-    target.cog = data.cog;
-    target.trunk = data.rotation[static_cast<size_t>(model.trunk_body())];
-    target.feet = places.at(k);
-    RobotState state = given;
-    ik.solve(target, state, data);
-    values.row(i) << (state.base.position - given.base.position).transpose(),
-        log_rotation(state.base.attitude * given.base.attitude.conjugate()).transpose(),
-        (state.theta - given.theta).transpose();
-  }
-  return through_knots(values);
+  return result;
 }
 
 VectorXd random_start(const CorrectionProblem& problem, const RandomStart& how) {
@@ -238,22 +146,15 @@ VectorXd initial_guess(const CorrectionProblem& problem, const Nlp& nlp, const R
   VectorXd best = nlp.start;
   LeastLinearViolation least = least_linear_violation(problem, best);
   if (least.worst < policy::guess::kFarOff) return best;
-  const Index rows = track.coefficients.rows();
-  const auto take_better = [&](const MatrixXd& coefficients) {
-    const VectorXd x = problem.point(coefficients);
+  for (const double reach : policy::guess::kReaches) {
+    const VectorXd x = problem.point(straight_line_guess(model, series, findings, reach,
+                                                         track.spacing, track.coefficients.rows()));
     const LeastLinearViolation here = least_linear_violation(problem, x);
-    if (here.sum >= least.sum) return;
+    if (here.sum >= least.sum) continue;
     least = here;
     best = x;
-  };
-  for (const double reach : policy::guess::kReaches)
-    take_better(straight_line_guess(model, series, findings, reach, track.spacing, rows));
-  // Soles that come to their places suddenly need large forces. So all rows count here.
-  Nlp from = nlp;
-  from.start = best;
-  const double worst = violation_at_start(from);
-  from.start = problem.point(placed_soles_guess(model, series, track.spacing, rows));
-  return violation_at_start(from) < worst ? from.start : best;
+  }
+  return best;
 }
 
 }  // namespace ayumi

@@ -23,20 +23,13 @@ Eigen::MatrixXd straight_line_guess(const RobotModel& model, const CommandSeries
                                     const std::vector<Finding>& findings, double reach,
                                     double spacing, Eigen::Index rows);
 
-/// `rows` control points that put the supporting soles in their places by inverse kinematics of the
-/// legs, with COG and trunk as in the motion. Between two contacts, the change of a sole is
-/// blended.
-Eigen::MatrixXd placed_soles_guess(const RobotModel& model, const CommandSeries& series,
-                                   double spacing, Eigen::Index rows);
-
 /// The variables of the program for random control points.
 Eigen::VectorXd random_start(const CorrectionProblem& problem, const RandomStart& how);
 
 /// The point from which the program starts. It is the start of `nlp`, unless this start violates
-/// the strongly nonlinear rows (soles and clearances) by much. In this case it is that one of the
-/// straight-line guesses that violates these rows least, if it violates them less than the start
-/// does. It is the guess with the soles in their places if the largest violation of all rows is
-/// smaller there.
+/// the strongly nonlinear rows (soles and clearances) by much. In this case it is the straight-line
+/// guess with the smallest violation of these rows, if this violation is smaller than that of the
+/// start.
 Eigen::VectorXd initial_guess(const CorrectionProblem& problem, const Nlp& nlp,
                               const RobotModel& model, const CommandSeries& series,
                               const std::vector<Finding>& findings);

@@ -193,16 +193,19 @@ std::string finding_list(const RobotModel& model, const ConsistencyReport& check
 }
 
 Table summary_table(const RobotModel& model, const CheckSummary& summary) {
-  // A value below this, in the unit of its figure, counts as rounding of the computation. Chosen:
-  // no limit of a figure is as small.
-  constexpr double kRounding = 1e-4;
+  // A value below this share of its tolerance counts as rounding of the computation. Chosen: the
+  // landing speed of a foot at rest is computed as 1e-6 m/s, and no reader needs a ten-thousandth
+  // of a tolerance.
+  constexpr double kRoundingShare = 1e-4;
   Table table = {"Figures of the check", {}, {}};
   for (const FindingSpec* spec : summary_figures()) {
     const double value = spec->figure.scale * summary[spec->kind];
-    table.rows.push_back({spec->figure.label,
-                          has_limit(model, spec->kind)
-                              ? figure(std::abs(value) < kRounding ? 0 : value, spec->figure.unit)
-                              : "no limit is stated"});
+    const bool is_rounding =
+        std::abs(summary[spec->kind]) < kRoundingShare * std::abs(spec->tolerance);
+    table.rows.push_back(
+        {spec->figure.label, has_limit(model, spec->kind)
+                                 ? figure(is_rounding ? 0 : value, spec->figure.unit)
+                                 : "no limit is stated"});
   }
   return table;
 }

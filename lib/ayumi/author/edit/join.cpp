@@ -326,7 +326,7 @@ Pattern joined(const RobotModel& model, const MotionPart& first, const MotionPar
     if (has_keys(result, side) != has_keys(rest, side))
       write_swings_as_keys(model, side, has_keys(result, side) ? rest : result);
   for (const RobotState& state : between) add_row(*result.table, state);
-  const PostureFade fade(from, to, ticks > 0 ? 0 : ticks_of(kFade, a.dt));
+  const PostureFade fade(from, to, ticks > 0 ? 0 : ticks_of(std::min(kFade, b.duration()), a.dt));
   for (size_t k = skip; k < b.samples.size(); ++k)
     add_row(*result.table, fade.applied(moved(shift, b.samples[k].state), static_cast<int>(k)));
 

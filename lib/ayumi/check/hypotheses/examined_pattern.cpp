@@ -13,7 +13,8 @@ namespace ayumi {
 namespace {
 
 bool has_instant(const std::vector<double>& times, double t) {
-  return has_beside(times, t, [&](double other) { return std::abs(other - t) < kSameInstant; });
+  return hypotheses::has_beside(times, t,
+                                [&](double other) { return std::abs(other - t) < kSameInstant; });
 }
 
 }  // namespace
@@ -23,7 +24,7 @@ ExaminedPattern::ExaminedPattern(const RobotModel& of_robot, const Pattern& exam
     : model(of_robot), pattern(examined), found(outcome), values(written_values(model, pattern)) {
   for (const Phase& phase : pattern.phases) ends.push_back(phase.until);
   for (const Keyframe& key : pattern.keyframes)
-    if (is_of_contact(key)) contacts.push_back(key.t);
+    if (hypotheses::is_of_contact(key)) contacts.push_back(key.t);
   std::sort(ends.begin(), ends.end());
   std::sort(contacts.begin(), contacts.end());
   try {
@@ -89,19 +90,23 @@ Support ExaminedPattern::support_at(double t) const {
   return Support::both;
 }
 
-bool is_of_contact(const Keyframe& key) {
+bool hypotheses::is_of_contact(const Keyframe& key) {
   return (key.zmp && key.zmp->place != ZmpKey::Place::center) || key.feet[0] || key.feet[1];
 }
 
-double whole_degrees(double radians) {
+double hypotheses::whole_degrees(double radians) {
   constexpr double degree = std::numbers::pi / 180;
   return std::round(radians / degree) * degree;
 }
 
-std::string seconds(double t) { return text::brief(t, 5) + " s"; }
+std::string hypotheses::seconds(double t) { return text::brief(t, 5) + " s"; }
 
-bool is_single(Support support) { return support == Support::left || support == Support::right; }
+bool hypotheses::is_single(Support support) {
+  return support == Support::left || support == Support::right;
+}
 
-Side stance_of(Support support) { return support == Support::left ? Side::left : Side::right; }
+Side hypotheses::stance_of(Support support) {
+  return support == Support::left ? Side::left : Side::right;
+}
 
 }  // namespace ayumi

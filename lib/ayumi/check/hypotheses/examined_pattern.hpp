@@ -64,6 +64,8 @@ struct ExaminedPattern {
   Support support_at(double t) const;  ///< planned support at this time [s]
 };
 
+namespace hypotheses {
+
 /// Whether a key states the place of a foot, or a place of the ZMP other than "center".
 bool is_of_contact(const Keyframe& key);
 /// The nearest angle in whole degrees [rad].
@@ -81,5 +83,7 @@ bool has_beside(const std::vector<double>& times, double t, const Same& same) {
   return (after != times.end() && same(*after)) ||
          (after != times.begin() && same(*std::prev(after)));
 }
+
+}  // namespace hypotheses
 
 }  // namespace ayumi
