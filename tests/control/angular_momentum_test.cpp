@@ -106,8 +106,8 @@ TEST_P(UpperBody, GivesTheMomentAndNoneAboutTheVertical) {
   AngularMomentumTask task(b.model, b.limits());
   const double size = 1e-3 * b.model.mass();
   const Vector3d moment(0.6 * size, -0.8 * size, 0);
-  const UpperBodyTurn& turn =
-      task.update(moment, b.data, b.state.theta, Vector2d::Zero(), kHoapOmega, kMomentumTick);
+  const UpperBodyTurn& turn = task.update(moment, b.data, b.state.theta, Vector2d::Zero(),
+                                          TurnRoom{}, kHoapOmega, kMomentumTick);
   VectorXd rate(task.joints().size() + 2);
   rate.head<2>() = turn.lean_rate.head<2>();
   for (size_t i = 0; i < task.joints().size(); ++i)
@@ -127,7 +127,7 @@ TEST_P(UpperBody, StaysWithinRangeSpeedAndTorqueAndComesBack) {
   for (int k = 0; k < 4000; ++k) {
     const UpperBodyTurn& turn =
         task.update(k < 1000 ? moment : Vector3d(Vector3d::Zero()), b.data, b.state.theta,
-                    Vector2d::Zero(), kHoapOmega, kMomentumTick);
+                    Vector2d::Zero(), TurnRoom{}, kHoapOmega, kMomentumTick);
     most = std::max(most, turn.lean.cwiseAbs().maxCoeff());
     arms = std::max(arms, turn.joints.cwiseAbs().maxCoeff());
     for (int j = 0; j < b.model.dof_count(); ++j) {
@@ -142,7 +142,7 @@ TEST_P(UpperBody, StaysWithinRangeSpeedAndTorqueAndComesBack) {
   EXPECT_LT(most, 0.45);
   EXPECT_GT(arms, 0.5);
   const UpperBodyTurn& last = task.update(Vector3d::Zero(), b.data, b.state.theta, Vector2d::Zero(),
-                                          kHoapOmega, kMomentumTick);
+                                          TurnRoom{}, kHoapOmega, kMomentumTick);
   EXPECT_LT(last.lean.norm(), 0.01);
   EXPECT_LT(last.joints.norm(), 0.01);
 }
@@ -163,7 +163,7 @@ TEST_P(UpperBody, WhatStatesNoTorqueDoesNotTurn) {
     for (int k = 0; k < 200; ++k) {
       const UpperBodyTurn& turn =
           task.update(5 * b.model.mass() * Vector3d(1, 1, 0), b.data, b.state.theta,
-                      Vector2d::Zero(), kHoapOmega, kMomentumTick);
+                      Vector2d::Zero(), TurnRoom{}, kHoapOmega, kMomentumTick);
       ASSERT_EQ(turn.lean.norm(), 0);
       if (!arms) {
         ASSERT_EQ(turn.joints.norm(), 0);
@@ -185,8 +185,9 @@ TEST_P(UpperBody, ATiltedTrunkIsTurnedLessFar) {
       AngularMomentumTask task(b.model, b.limits());
       Vector2d most = Vector2d::Zero();
       for (int k = 0; k < 1000; ++k) {
-        const UpperBodyTurn& turn = task.update(5 * sign * b.model.mass() * axis, b.data,
-                                                b.state.theta, tilt, kHoapOmega, kMomentumTick);
+        const UpperBodyTurn& turn =
+            task.update(5 * sign * b.model.mass() * axis, b.data, b.state.theta, tilt, TurnRoom{},
+                        kHoapOmega, kMomentumTick);
         most = most.cwiseMax(sign * turn.lean.head<2>());
         EXPECT_LT((tilt + turn.lean.head<2>()).norm(), 0.68);
       }
@@ -198,6 +199,28 @@ TEST_P(UpperBody, ATiltedTrunkIsTurnedLessFar) {
     }
 }
 
+// The legs leave less room to the trunk than its own range: it brakes in time and stops there.
+TEST_P(UpperBody, TheTrunkStopsWhereTheLegsEnd) {
+  AtHome b(GetParam());
+  constexpr double kEnd = 0.2;
+  for (const double sign : {1.0, -1.0}) {
+    AngularMomentumTask task(b.model, b.limits());
+    double most = 0, turned = 0;
+    for (int k = 0; k < 1000; ++k) {
+      TurnRoom room;
+      room.above.x() = kEnd - turned;
+      room.below.x() = kEnd + turned;
+      const UpperBodyTurn& turn =
+          task.update(5 * sign * b.model.mass() * Vector3d(1, 0, 0), b.data, b.state.theta,
+                      Vector2d::Zero(), room, kHoapOmega, kMomentumTick);
+      turned = turn.lean.x();
+      most = std::max(most, sign * turned);
+    }
+    EXPECT_GT(most, 0.95 * kEnd);
+    EXPECT_LT(most, 1.02 * kEnd);
+  }
+}
+
 // A joint with a larger weight in W turns less, and the other coordinates turn more.
 TEST_P(UpperBody, WeightsMoveTheTurnFromTheArmsToTheTrunk) {
   AtHome b(GetParam());
@@ -207,7 +230,8 @@ TEST_P(UpperBody, WeightsMoveTheTurnFromTheArmsToTheTrunk) {
     VectorXd weight = b.model.joint_weight();
     for (const int j : task.joints()) weight[j] = arms;
     task.weigh(weight);
-    return task.update(moment, b.data, b.state.theta, Vector2d::Zero(), kHoapOmega, kMomentumTick);
+    return task.update(moment, b.data, b.state.theta, Vector2d::Zero(), TurnRoom{}, kHoapOmega,
+                       kMomentumTick);
   };
   const UpperBodyTurn light = turn_with(0.01), heavy = turn_with(1e6);
   EXPECT_LT(heavy.joint_rates.norm(), 1e-3 * light.joint_rates.norm());

@@ -108,6 +108,41 @@ TEST(Resolver, AKneeAtItsStopIsHeld) {
   EXPECT_TRUE(knee);
 }
 
+// A trunk that tilts to the side, with the COG and the soles at rest, turns until a hip is at its
+// position limit. The room that is stated in advance ends there, on either side.
+TEST(ReferenceBody, TheHipsLimitTheTurnOfTheTrunk) {
+  for (const double side : {1.0, -1.0}) {
+    SCOPED_TRACE(side);
+    Standing robot(0.8);
+    const int n = robot.model.dof_count();
+    ReferenceBody body(robot.model, robot.limits, 0.001, robot.command.state,
+                       robot.command.state.theta);
+    EXPECT_EQ(body.turn_room().above.x(), INFINITY) << "nothing is known before the first tick";
+    UpperBodyTurn turn;
+    turn.joints.setZero(n);
+    turn.joint_rates.setZero(n);
+    double room = 0;
+    bool at_limit = false;
+    for (int k = 0; k < 1000 && !at_limit; ++k) {
+      ControlOutput out;
+      turn.lean.x() = side * 0.001 * k;
+      turn.lean_rate.x() = side;
+      body.anchor(Side::left, robot.command.feet[0]);
+      body.turn(turn);
+      body.advance({}, 0.2, robot.command, robot.command, Eigen::VectorXd::Zero(n), out);
+      if (k == 10) {
+        const TurnRoom left = body.turn_room();
+        room = turn.lean.norm() + (side > 0 ? left.above.x() : left.below.x());
+      }
+      for (const std::string& note : out.notes)
+        at_limit |= note.find("hip_roll is at its position limit") != std::string::npos;
+    }
+    EXPECT_TRUE(at_limit);
+    EXPECT_GT(room, 0.2);
+    EXPECT_NEAR(turn.lean.norm(), room, 0.05 * room);
+  }
+}
+
 TEST(Resolver, WhatNoTaskCanGiveMakesTheMotionSlower) {
   Standing robot(0.8);
   const Resolution r = robot.solve({2.0, 0, 0});

@@ -112,6 +112,20 @@ TEST(Hoap1Walk, StandsAPushThatNeedsAngularMomentum) {
   EXPECT_EQ(simulate(walk().model, series, options).result.outcome, Outcome::fell);
 }
 
+// A push of 1.32 times the capture bound to either side. The trunk turns as far as the hips can,
+// and slows down before one of them would stop it suddenly.
+TEST(Hoap1Walk, StandsAPushToTheSideThatTheRangeOfTheHipsAllows) {
+  const CommandSeries series = sample(walk().model, stand_pattern(walk().model, 3));
+  SimulateOptions options = unpushed("dtad");
+  options.profile = "hoap1-strong";
+  for (const double side : {1.0, -1.0}) {
+    SCOPED_TRACE(side);
+    options.scenario = {
+        {.at = 0.5, .duration = 0.02, .what = Push{.magnitude = 3.83, .direction = {0, side, 0}}}};
+    EXPECT_EQ(simulate(walk().model, series, options).result.outcome, Outcome::stands);
+  }
+}
+
 TEST(Hoap1Walk, PushOnSlipperyGround) {
   SimulateOptions options = pushed("dtad");
   options.world.friction = 0.4;

@@ -161,7 +161,8 @@ const Eigen::Matrix3Xd& AngularMomentumTask::matrix(const RobotData& data) {
 
 // Largest rate of a coordinate: the rate from which its torque can stop it at the end of its range.
 // A coordinate without a stated torque does not turn, because no such rate is known.
-void AngularMomentumTask::bound(const VectorXd& commanded, const Vector2d& tilt, double dt) {
+void AngularMomentumTask::bound(const VectorXd& commanded, const Vector2d& tilt,
+                                const TurnRoom& room, double dt) {
   for (Eigen::Index i = 0; i < weight_.size(); ++i) {
     if (!std::isfinite(torque_[i])) {
       low_[i] = high_[i] = 0;
@@ -173,6 +174,8 @@ void AngularMomentumTask::bound(const VectorXd& commanded, const Vector2d& tilt,
       const double most = std::sqrt(std::max(0.0, kTrunkTilt * kTrunkTilt - other * other));
       below = std::min(0.0, std::max(below, -most - tilt[i]));
       above = std::max(0.0, std::min(above, most - tilt[i]));
+      below = std::max(below, turn_[i] - room.below[i]);
+      above = std::min(above, turn_[i] + room.above[i]);
     } else {
       const auto j = static_cast<size_t>(joints_[static_cast<size_t>(i) - 2]);
       const Dof& dof = model_->dofs()[j];
@@ -180,8 +183,8 @@ void AngularMomentumTask::bound(const VectorXd& commanded, const Vector2d& tilt,
       above = std::max(0.0, dof.upper - commanded[static_cast<Eigen::Index>(j)]);
     }
     const double most = torque_[i] / (inertia_[i] + rotor_[i]);
-    const auto speed_with = [&](double room) {
-      return std::min(speed_[i], std::sqrt(2 * most * std::max(0.0, room)));
+    const auto speed_with = [&](double left) {
+      return std::min(speed_[i], std::sqrt(2 * most * std::max(0.0, left)));
     };
     high_[i] = std::clamp((speed_with(above - turn_[i]) - rate_[i]) / dt, -most, most);
     low_[i] = std::clamp((-speed_with(turn_[i] - below) - rate_[i]) / dt, -most, most);
@@ -218,12 +221,12 @@ void AngularMomentumTask::accelerate(const Vector3d& moment) {
 
 const UpperBodyTurn& AngularMomentumTask::update(const Vector3d& moment, const RobotData& data,
                                                  const VectorXd& commanded, const Vector2d& tilt,
-                                                 double omega, double dt) {
+                                                 const TurnRoom& room, double omega, double dt) {
   const double back = kReturnRate * omega;
   rate_ -= dt * (back * back * turn_ + 2 * back * rate_);
   if (!moment.isZero(0) || !turn_.isZero(kReturned) || !rate_.isZero(kReturned)) {
     matrix(data);
-    bound(commanded, tilt, dt);
+    bound(commanded, tilt, room, dt);
     accelerate(moment);
     rate_ += dt * acceleration_;
     turn_ += dt * rate_;

@@ -3,6 +3,7 @@
 // trunk and the arms provide the missing moment by their acceleration. Afterwards they return
 // slowly.
 
+#include <cmath>
 #include <vector>
 
 #include "ayumi/dynamics/robot_data.hpp"
@@ -16,6 +17,13 @@ struct UpperBodyTurn {
   Eigen::Vector3d lean_rate = Eigen::Vector3d::Zero();  ///< rate of this tilt [rad/s]
   Eigen::VectorXd joints;       ///< turn of each joint by dof; zero except for the arms [rad]
   Eigen::VectorXd joint_rates;  ///< rates of these turns [rad/s]
+};
+
+/// How far the trunk can still turn about the world's x and y axes, in the negative and in the
+/// positive direction, until a joint that turns it is at its position limit [rad].
+struct TurnRoom {
+  Eigen::Vector2d below = Eigen::Vector2d::Constant(INFINITY);
+  Eigen::Vector2d above = Eigen::Vector2d::Constant(INFINITY);
 };
 
 /// The coordinates s are the trunk's tilt about the world's x and y axes and the joints of the arms
@@ -35,11 +43,15 @@ class AngularMomentumTask {
 
   /// One tick of dt [s]. `moment` is dL about the COG in world axes [N m]; its vertical part is not
   /// used. `data` has the positions of the reference, `commanded` has the joints of the plan [rad],
-  /// and `tilt` is the tilt of the plan's trunk about the world's x and y axes [rad]. The unit of
-  /// the rate at which the turn returns is omega = sqrt(g / z) [1/s].
+  /// and `tilt` is the tilt of the plan's trunk about the world's x and y axes [rad]. `room` is
+  /// what the joints of the legs leave to the trunk. The unit of the rate at which the turn returns
+  /// is omega = sqrt(g / z) [1/s].
   const UpperBodyTurn& update(const Eigen::Vector3d& moment, const RobotData& data,
                               const Eigen::VectorXd& commanded, const Eigen::Vector2d& tilt,
-                              double omega, double dt);
+                              const TurnRoom& room, double omega, double dt);
+
+  /// Whether the turn and its rate are zero.
+  bool at_rest() const { return turn_.isZero(0) && rate_.isZero(0); }
 
   /// A_G at these positions: the angular momentum about the COG for a unit rate of each coordinate;
   /// the first two are those of the trunk [N m s].
@@ -49,7 +61,8 @@ class AngularMomentumTask {
   const std::vector<int>& joints() const { return joints_; }
 
  private:
-  void bound(const Eigen::VectorXd& commanded, const Eigen::Vector2d& tilt, double dt);
+  void bound(const Eigen::VectorXd& commanded, const Eigen::Vector2d& tilt, const TurnRoom& room,
+             double dt);
   void accelerate(const Eigen::Vector3d& moment);
 
   const RobotModel* model_;

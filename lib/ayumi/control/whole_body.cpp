@@ -80,6 +80,11 @@ constexpr double kFlightRate = 10;
 // come into one plane then turn by no more than a few times the tilt.
 constexpr double kHipDamping = 1e-3;
 
+// Smallest turn of a joint, as a share of the trunk's turn, with which the joint's limit bounds the
+// trunk. Chosen: the joints of the hips turn by 1 to 1.3 times the trunk's turn. Other joints turn
+// by less than 0.4; if they are at a limit, the remaining joints do the task without them.
+constexpr double kTurnsTrunk = 0.5;
+
 // Definition: bits for the limits by which a servo target was bounded.
 constexpr char kTooFast = 1, kTooFar = 2;
 
@@ -367,6 +372,30 @@ const VectorXd& ReferenceBody::ankle_offsets(const Estimate& estimate, const Ank
       offsets_[leg[i]] = data_.axis[model_->dofs()[leg[i]].body].dot(turn);
   }
   return offsets_;
+}
+
+TurnRoom ReferenceBody::turn_room() {
+  TurnRoom room;
+  StackedTask& task = work_.task;
+  if (task.J.cols() == 0) return room;
+  const StackedTask::Vector asked = task.u;
+  work_.start.setZero(model_->dof_count());
+  for (int axis = 0; axis < 2; ++axis) {
+    task.u.setZero();
+    task.u[9 + axis] = options_.angular_length;
+    solve_stacked_task(task, weight_, work_.start, options_.damping, work_.weighted, turning_);
+    for (int j = 0; j < model_->dof_count(); ++j) {
+      const Dof& dof = model_->dofs()[j];
+      const double rate = turning_[j];
+      if (!dof.limited || std::abs(rate) < kTurnsTrunk) continue;
+      const double up = std::max(0.0, dof.upper - reference_.theta[j]) / std::abs(rate);
+      const double down = std::max(0.0, reference_.theta[j] - dof.lower) / std::abs(rate);
+      room.above[axis] = std::min(room.above[axis], rate > 0 ? up : down);
+      room.below[axis] = std::min(room.below[axis], rate > 0 ? down : up);
+    }
+  }
+  task.u = asked;
+  return room;
 }
 
 void ReferenceBody::advance(const CogReference& wanted, double z, const CommandSample& command,

@@ -142,6 +142,10 @@ class ReferenceBody {
   void fly(const Eigen::Vector3d& tilt, const CommandSample& command, const CommandSample& next,
            const Eigen::VectorXd& offsets, ControlOutput& out);
 
+  /// What the position limits of the joints leave to the turn of the trunk, if COG and soles stay
+  /// as in the last tick; unlimited before the first tick.
+  TurnRoom turn_room();
+
   /// Sets the turn of the trunk and the arms relative to their command from now on.
   void turn(const UpperBodyTurn& turn) { options_.turn = turn; }
 
@@ -165,6 +169,7 @@ class ReferenceBody {
   double dt_;
   RobotData data_;
   Eigen::VectorXd weight_, lead_, previous_target_, offsets_;
+  Eigen::VectorXd turning_;  // rates of the joints for a trunk that turns at unit rate [1]
   std::vector<char> noted_;  // by dof: the limits by which its servo target was bounded
   ResolverWork work_;
   Resolution resolution_;

@@ -378,8 +378,13 @@ Vector2d Dtad::zmp_gap(const Vector2d& ref_zmp, double w, double z) {
 void Dtad::turn_upper_body(double w) {
   const Vector3d moment =
       model_->mass() * kGravity * params_.momentum_gain * Vector3d(-outside_.y(), outside_.x(), 0);
+  // While a foot swings, its leg gives way before the trunk does.
+  const bool bounded = plan().support == Support::both;
+  const bool turns = !moment.isZero(0) || !momentum_.at_rest();
+  const TurnRoom room = bounded && turns ? body_.turn_room() : TurnRoom{};
   body_.turn(momentum_.update(moment, body_.data(), plan().state.theta,
-                              planned_tilt(*model_, body_.data(), plan().state), w, command_.dt()));
+                              planned_tilt(*model_, body_.data(), plan().state), room, w,
+                              command_.dt()));
 }
 
 // A planned flight lasts until its end is planned and the load cells feel the ground.
