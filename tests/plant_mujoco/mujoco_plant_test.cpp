@@ -57,9 +57,12 @@ TEST(MujocoPlant, SolesAreAsSoftAsTheSidecarStates) {
   for (int i = 1; i <= 1500; ++i) {
     theirs.step(s.state.theta, {}, 1e-3);
     ours.step(s.state.theta, {}, 1e-3);
-    if (i == 100)
+    if (i == 100) {
       EXPECT_NEAR(s.cog.z() - theirs.data().cog.z(), (1 - std::exp(-1)) * sink, 0.1 * sink);
-    if (i % 100 == 0) EXPECT_NEAR(theirs.data().cog.z(), ours.data().cog.z(), 0.02 * sink) << i;
+    }
+    if (i % 100 == 0) {
+      EXPECT_NEAR(theirs.data().cog.z(), ours.data().cog.z(), 0.02 * sink) << i;
+    }
   }
   EXPECT_NEAR(s.cog.z() - theirs.data().cog.z(), sink, 0.1 * sink);
 }
