@@ -12,6 +12,7 @@
 #include "ayumi/math/random.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/math/windows.hpp"
+#include "ayumi/motion/pattern_context.hpp"
 
 namespace ayumi {
 
@@ -198,7 +199,8 @@ MatrixXd straight_line_guess(const RobotModel& model, const CommandSeries& serie
 MatrixXd placed_soles_guess(const RobotModel& model, const CommandSeries& series, double spacing,
                             Index rows) {
   MatrixXd values = MatrixXd::Zero(rows, model.velocity_count());
-  const InverseKinematics ik(model, series.samples.front().state.theta);
+  // The motion may be at fault at its beginning, too, so its first posture is no reference.
+  const InverseKinematics ik(model, default_posture(model, {}));
   SolePlaces places(model, series);
   RobotData data(model);
   const int last = static_cast<int>(series.samples.size()) - 1;
@@ -211,6 +213,7 @@ MatrixXd placed_soles_guess(const RobotModel& model, const CommandSeries& series
     target.cog = data.cog;
     target.trunk = data.rotation[static_cast<size_t>(model.trunk_body())];
     target.feet = places.at(k);
+    target.nearest = true;
     RobotState state = given;
     ik.solve(target, state, data);
     values.row(i) << (state.base.position - given.base.position).transpose(),
