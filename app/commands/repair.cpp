@@ -44,6 +44,9 @@ struct RepairCommand {
   RepairOptions repair;  // options that only the command line has
 };
 
+// Number of missed places of the COG in the output. Chosen: they fit on two lines.
+constexpr size_t kMissedListed = 4;
+
 constexpr const char* kPartialMark =
     "PARTIAL: the repair was stopped before its end; this pattern is not consistent.";
 constexpr const char* kStoppedMark =
@@ -108,9 +111,42 @@ const char* words_of(RepairStatus status) {
   return status == RepairStatus::not_converged ? "no repair was found" : name_of(status);
 }
 
-std::string in_words(const RepairCommand& options, const Task& input, const RepairResult& result,
+std::string smooth_words(const RepairResult& result) {
+  std::vector<std::string> windows;
+  for (const SmoothWindow& w : result.correction.smooth)
+    windows.push_back(text::fixed(w.begin, 2) + "-" + text::fixed(w.end, 2) + " s");
+  if (windows.empty()) return "";
+  return "  smooth curves replace jumps and noise of the motion at " + text::join(windows, ", ") +
+         "\n";
+}
+
+// What the motion that is made from scratch begins with, and which keys of the COG it misses.
+std::string start_words(const Pattern& pattern, const GeneratedMotion& made) {
+  std::string out = "  made from postures for the planned feet, ";
+  out += made.cog == PlannedCog::zmp
+             ? "where the COG follows the ZMP in place of its keys between the first and the last"
+             : "and the COG as planned";
+  if (made.lowered > 0)
+    out += "; the COG is " + text::fixed(1e3 * made.lowered, 1) + " mm lower than " +
+           (pattern.cog_height > 0 ? "cog_height of the defaults" : "by default");
+  if (made.repair.iterations == 0) out += "; nothing had to be corrected";
+  out += "\n";
+  const size_t named = std::min(made.missed.size(), kMissedListed);
+  std::vector<std::string> places;
+  for (size_t i = 0; i < named; ++i)
+    places.push_back(text::fixed(1e3 * made.missed[i].off, 1) + " mm at " +
+                     text::fixed(made.missed[i].t, 3) + " s");
+  if (places.empty()) return out;
+  out += "  the COG is not where the pattern puts it: it is off by " + text::join(places, ", ");
+  if (made.missed.size() > named)
+    out += " and at " + text::counted(static_cast<long>(made.missed.size() - named), "more key");
+  return out + ". No motion through these places was found\n";
+}
+
+std::string in_words(const RepairCommand& options, const Task& input, const GeneratedMotion& made,
                      const std::vector<Mistake>& mistakes, double wall) {
   const RobotModel& model = input.robot;
+  const RepairResult& result = made.repair;
   std::string out = options.pattern + ": " +
                     (result.partial ? "stopped; the result is partial" : words_of(result.status)) +
                     "\n";
@@ -122,6 +158,8 @@ std::string in_words(const RepairCommand& options, const Task& input, const Repa
     out +=
         "  the motion with the smallest violation is not written (--keep-partial writes it). In "
         "this motion:\n";
+  if (options.from_scratch) out += start_words(input.pattern, made);
+  out += smooth_words(result);
   out += motion_words(model, result.moved, result.before, result.check);
   out += cost_words(result.change) + "; " + std::to_string(result.variables) + " variables, " +
          std::to_string(result.constraints) + " constraints, " + std::to_string(result.iterations) +
@@ -185,6 +223,15 @@ nlohmann::ordered_json in_json(const PassingPace& pace) {
   json["factor"] = pace.factor > 0 ? nlohmann::ordered_json(pace.factor) : nullptr;
   json["whole"] = pace.whole > 0 ? nlohmann::ordered_json(pace.whole) : nullptr;
   return json;
+}
+
+nlohmann::ordered_json start_json(const GeneratedMotion& made) {
+  nlohmann::ordered_json missed = nlohmann::ordered_json::array();
+  for (const MissedCog& place : made.missed)
+    missed.push_back({{"at_s", place.t}, {"off_m", place.off}});
+  return {{"cog", made.cog == PlannedCog::zmp ? "zmp" : "keys"},
+          {"lowered_m", made.lowered},
+          {"missed_cog", missed}};
 }
 
 // The commands that show the changes.
@@ -348,20 +395,25 @@ class StruggleTeller {
   Clock::time_point told_ = Clock::now();
 };
 
-RepairResult repair_telling(const Task& input, const RepairOptions& wishes, bool from_scratch,
-                            const Progress& progress) {
+// A motion that is not made from scratch has itself as the start.
+GeneratedMotion repair_telling(const Task& input, const RepairOptions& wishes, bool from_scratch,
+                               const Progress& progress) {
   StruggleTeller teller;
   RepairOptions options = wishes;
   options.on_check = [&teller](const ConsistencyReport& check) { teller.note(check); };
   try {
-    RepairResult result = from_scratch ? generate(input.robot, input.pattern, input.series, options,
-                                                  teller.around(progress))
-                                       : repair_task(input, options, teller.around(progress));
-    if (result.partial) {
-      teller.note(result.check);
+    GeneratedMotion made;
+    if (from_scratch) {
+      made = generate(input.robot, input.pattern, input.series, options, teller.around(progress));
+    } else {
+      made.repair = repair_task(input, options, teller.around(progress));
+      made.start = input.series;
+    }
+    if (made.repair.partial) {
+      teller.note(made.repair.check);
       teller.say_what_is_left();
     }
-    return result;
+    return made;
   } catch (const Interrupted&) {
     teller.say_what_is_left();
     throw;
@@ -383,8 +435,9 @@ void repair_pattern(Context& context, RepairCommand options) {
   const Task input = options.from_scratch ? load_plan(context, options) : load(context, options);
   options.repair = repair_options(options, input);
   const auto begin = std::chrono::steady_clock::now();
-  const RepairResult result =
+  const GeneratedMotion made =
       repair_telling(input, options.repair, options.from_scratch, context.progress());
+  const RepairResult& result = made.repair;
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   context.exit_code = exit_code_of(result);
@@ -405,12 +458,11 @@ void repair_pattern(Context& context, RepairCommand options) {
   PassingPace pace;
   if (changes) pace = passing_pace(context, input, result.before, options.tolerances);
   if (!options.plot.empty() && !result.series.samples.empty())
-    plot_motions(input.robot, input.series, result.series,
+    plot_motions(input.robot, made.start, result.series,
                  {fs::path(options.pattern).stem().string() + ", before and after its repair",
                   input.profile},
                  options.plot);
-  context.print(in_words(options, input, result, mistakes, wall) + in_words(values) +
-                in_words(pace) +
+  context.print(in_words(options, input, made, mistakes, wall) + in_words(values) + in_words(pace) +
                 (written ? "  written to " + options.out + "\n" + see_words(options, result)
                          : "  nothing written\n"));
   nlohmann::ordered_json json = nlohmann::ordered_json::parse(repair_json(result));
@@ -422,6 +474,7 @@ void repair_pattern(Context& context, RepairCommand options) {
   json["parameters_together"] = in_json(alone ? PassingValues() : values.front());
   json["slower"] = in_json(pace);
   json["likely_mistakes"] = cause_texts(mistakes);
+  if (options.from_scratch) json["start"] = start_json(made);
   json["wall_s"] = wall;
   json["output"] = written ? nlohmann::ordered_json(options.out) : nullptr;
   context.print_json(json.dump(2));

@@ -4,6 +4,7 @@
 
 #include "ayumi/base/file.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
+#include "tests/support/error_message.hpp"
 
 namespace ayumi {
 namespace {
@@ -45,6 +46,24 @@ TEST(WithCorrection, AddsTheMemberAndKeepsEverythingElse) {
   for (const char* kept : {"// \"correction\": a comment", "/* } */", "${end}",
                            "\"center\" } ],   // the last member\n"})
     EXPECT_NE(text.find(kept), std::string::npos) << kept << "\n" << text;
+}
+
+TEST(WithCorrection, WindowsAreInOrderAndDoNotOverlap) {
+  CorrectionTrack track = small_track(0.25);
+  track.smooth = {{0.2, 0.5, 0.05}, {0.5, 0.9, 0.04}};
+  const CorrectionTrack read = *read_text(with_correction(kText, track)).correction;
+  ASSERT_EQ(read.smooth.size(), 2u);
+  EXPECT_EQ(read.smooth[1].begin, 0.5);
+  EXPECT_EQ(read.smooth[1].spacing, 0.04);
+  for (const SmoothWindow& bad : {SmoothWindow{0.4, 0.9, 0.05}, SmoothWindow{0.1, 0.15, 0.05}}) {
+    track.smooth[1] = bad;
+    const std::string message =
+        test::error_message([&] { read_text(with_correction(kText, track)); });
+    EXPECT_NE(message.find("/correction/smooth/1"), std::string::npos) << message;
+    EXPECT_NE(message.find("before the end of the window that precedes it (0.5 s)"),
+              std::string::npos)
+        << message;
+  }
 }
 
 TEST(WithCorrection, ReplacesAnOlderOne) {

@@ -10,6 +10,7 @@
 #include "ayumi/plan/foot_plan.hpp"
 #include "ayumi/plan/sample_plan.hpp"
 #include "ayumi/repair/correction_problem.hpp"
+#include "ayumi/repair/motion_change.hpp"
 #include "ayumi/repair/policy.hpp"
 #include "ayumi/repair/repair_pattern.hpp"
 #include "tests/support/limited_biped.hpp"
@@ -327,8 +328,6 @@ TEST(Repair, SameBytesForAnyNumberOfThreads) {
   EXPECT_EQ(a.correction.coefficients, b.correction.coefficients);
 }
 
-// There is only the plan of a walk and of a squat, and no motion: legs and arms are as they are at
-// home.
 namespace {
 
 // The largest distance of a sole from its planned place [m].
@@ -363,12 +362,40 @@ Pattern plan_of_walk(const WalkParameters& walk) {
   return pattern;
 }
 
+// Both feet stay on the ground.
+Pattern plan_of_standing(double duration) {
+  Pattern pattern;
+  pattern.robot = "hoap1";
+  pattern.phases.emplace_back().until = duration;
+  return pattern;
+}
+
+GeneratedMotion made_of(const Pattern& pattern) {
+  return generate(hoap1(), pattern, sample_plan(hoap1(), pattern), {});
+}
+
+// Each key of the COG is followed within the tolerance of the check, or the result names it.
+void expect_no_key_is_lost(const Pattern& pattern, const GeneratedMotion& made) {
+  for (const Keyframe& key : pattern.keyframes) {
+    const bool named = std::any_of(made.missed.begin(), made.missed.end(),
+                                   [&](const MissedCog& missed) { return missed.t == key.t; });
+    const auto k = static_cast<size_t>(std::lround(key.t / made.repair.series.dt));
+    const Eigen::Vector3d& cog = made.repair.series.samples[k].cog;
+    double off = 0;
+    if (key.cog_x) off = std::max(off, std::abs(cog.x() - *key.cog_x));
+    if (key.cog_y) off = std::max(off, std::abs(cog.y() - *key.cog_y));
+    if (key.cog_height) off = std::max(off, std::abs(cog.z() - *key.cog_height));
+    EXPECT_EQ(named, off > tolerances({}, hoap1(), made.repair.series)[FindingKind::cog_residual])
+        << key.t << " s: " << off << " m";
+  }
+}
+
 }  // namespace
 
+// There is only the plan of a walk and of a squat, and no motion: legs and arms are as they are at
+// home.
 TEST(FromScratch, MakesAMotionOfThePlanAlone) {
-  Pattern squat;
-  squat.robot = "hoap1";
-  squat.phases.emplace_back().until = 3;
+  Pattern squat = plan_of_standing(3);
   const double home = default_cog_height(hoap1(), squat);
   squat.keyframes = {cog_key(0, {}, {}, home), cog_key(1.2, {}, {}, 0.88 * home),
                      cog_key(2.6, {}, {}, home)};
@@ -376,11 +403,12 @@ TEST(FromScratch, MakesAMotionOfThePlanAlone) {
        {squat, plan_of_walk({.steps = 4}), plan_of_walk({.steps = 3, .stride = 0.01, .turn = 0.15}),
         plan_of_walk({.steps = 2, .stride = 0, .side = 0.02})}) {
     const CommandSeries plan = sample_plan(hoap1(), pattern);
-    const RepairResult r = generate(hoap1(), pattern, plan, {});
-    expect_repaired(r);
-    EXPECT_LT(farthest_sole(plan, r.series), 1e-3);
+    const GeneratedMotion made = generate(hoap1(), pattern, plan, {});
+    expect_repaired(made.repair);
+    EXPECT_LT(farthest_sole(plan, made.repair.series), 1e-3);
+    EXPECT_TRUE(made.missed.empty());
     if (pattern.phases.size() > 1) continue;
-    EXPECT_NEAR(r.series.samples[1200].cog.z(), 0.88 * home, 2e-3);
+    EXPECT_NEAR(made.repair.series.samples[1200].cog.z(), 0.88 * home, 2e-3);
   }
 }
 
@@ -394,19 +422,113 @@ TEST(FromScratch, AKeyOfTheCogAtTheEndIsAGoal) {
   pattern.keyframes.push_back(cog_key(end, middle.x(), middle.y() + 0.008, {}));
   const CommandSeries plan = sample_plan(hoap1(), pattern);
   ASSERT_FALSE(check_consistency(hoap1(), plan).consistent);
-  const RepairResult r = generate(hoap1(), pattern, plan, {});
-  expect_repaired(r);
-  EXPECT_NEAR(r.series.samples.back().cog.x(), middle.x(), 2e-3);
-  EXPECT_NEAR(r.series.samples.back().cog.y(), middle.y() + 0.008, 2e-3);
+  const GeneratedMotion made = generate(hoap1(), pattern, plan, {});
+  expect_repaired(made.repair);
+  EXPECT_EQ(made.cog, PlannedCog::zmp);
+  EXPECT_TRUE(made.missed.empty());
+  EXPECT_NEAR(made.repair.series.samples.back().cog.x(), middle.x(), 2e-3);
+  EXPECT_NEAR(made.repair.series.samples.back().cog.y(), middle.y() + 0.008, 2e-3);
 }
 
-// The COG is planned so high that the legs do not reach the ground in the strides.
+// A sway and a lean while both feet stand, one slow and one so fast that the ZMP would leave the
+// support.
+TEST(FromScratch, KeysOfTheCogOverTwoFeetAreFollowedOrNamed) {
+  for (const double time : {1.2, 0.25}) {
+    Pattern pattern = plan_of_standing(1 + 2 * time);
+    const Eigen::Vector3d middle = FootPlan(hoap1(), pattern).support_center(0);
+    pattern.keyframes = {cog_key(0.5, middle.x(), middle.y(), {}),
+                         cog_key(0.5 + time, middle.x(), middle.y() + 0.025, {}),
+                         cog_key(0.5 + 2 * time, middle.x() + 0.01, middle.y() - 0.01, {})};
+    const GeneratedMotion made = made_of(pattern);
+    expect_repaired(made.repair);
+    expect_no_key_is_lost(pattern, made);
+    EXPECT_TRUE(time < 1 || made.missed.empty());
+  }
+}
+
+// Where the COG follows the ZMP, it still reaches the last place that its keys give: without any
+// step, and after the keys of the ZMP.
+TEST(FromScratch, ACogThatFollowsTheZmpReachesItsLastPlace) {
+  Pattern lean = plan_of_standing(3);
+  const Eigen::Vector3d middle = FootPlan(hoap1(), lean).support_center(0);
+  lean.keyframes = {cog_key(2, middle.x() + 0.01, middle.y() + 0.02, {})};
+  Pattern keyed = lean;
+  Keyframe zmp;
+  zmp.t = 1;
+  zmp.zmp.emplace().place = ZmpKey::Place::left;
+  keyed.keyframes.insert(keyed.keyframes.begin(), zmp);
+  for (const Pattern& pattern : {lean, keyed}) {
+    const CommandSeries plan = sample_plan(hoap1(), pattern, {}, {}, PlannedCog::zmp);
+    EXPECT_NEAR(plan.samples.back().cog.x(), middle.x() + 0.01, 1e-3);
+    EXPECT_NEAR(plan.samples.back().cog.y(), middle.y() + 0.02, 1e-3);
+  }
+}
+
+// The ZMP keys of the walk end over the middle of the feet, but the COG shall end beside it.
+TEST(FromScratch, KeysOfTheCogAreNotLostBesideKeysOfTheZmp) {
+  Pattern pattern = walk_pattern(hoap1(), {.steps = 2});
+  pattern.robot = "hoap1";
+  const FootPlan feet(hoap1(), pattern);
+  const Eigen::Vector3d middle = feet.support_center(feet.duration());
+  Keyframe zmp;
+  zmp.t = feet.duration() - 0.1;
+  zmp.zmp.emplace().place = ZmpKey::Place::center;
+  pattern.keyframes.assign(1, Keyframe());
+  pattern.keyframes[0].posture = "home";
+  pattern.keyframes.push_back(zmp);
+  pattern.keyframes.push_back(cog_key(feet.duration(), middle.x(), middle.y() + 0.01, {}));
+  const GeneratedMotion made = made_of(pattern);
+  expect_repaired(made.repair);
+  expect_no_key_is_lost(pattern, made);
+  EXPECT_TRUE(made.missed.empty());
+}
+
+// The COG is planned so high that the legs do not reach the ground in the strides. Only a default
+// says so, so a lower COG is tried, and the result says how much lower it is.
 TEST(FromScratch, LegsThatAreTooShortForThePlanAreHelped) {
   Pattern pattern = plan_of_walk({.steps = 2, .stride = 0.05});
   pattern.cog_height = 0.262;
   EXPECT_THROW(sample(hoap1(), pattern), Error);
   const CommandSeries plan = sample_plan(hoap1(), pattern);
   ASSERT_FALSE(check_consistency(hoap1(), plan).consistent);
-  const RepairResult r = generate(hoap1(), pattern, plan, {});
-  expect_repaired(r);
+  const GeneratedMotion made = generate(hoap1(), pattern, plan, {});
+  expect_repaired(made.repair);
+  EXPECT_NEAR(made.start.samples.front().cog.z(), 0.262 - made.lowered, 1e-3);
+  EXPECT_GT(made.lowered, 0);
+  // The changes are those from this start.
+  EXPECT_EQ(motion_change(hoap1(), made.start, made.repair.series).joint.size,
+            made.repair.max_joint_change);
+}
+
+// A key gives the height, which is a little above what the legs reach. No other start is tried; the
+// program brings the feet from the nearest postures to their places.
+TEST(FromScratch, NearestPosturesAreRepaired) {
+  Pattern pattern = plan_of_walk({.steps = 2, .stride = 0.05});
+  pattern.keyframes[0].cog_height = 0.251;
+  EXPECT_THROW(sample(hoap1(), pattern), Error);
+  const GeneratedMotion made = made_of(pattern);
+  expect_repaired(made.repair);
+  EXPECT_GT(made.repair.iterations, 0);
+  EXPECT_EQ(made.lowered, 0);
+  EXPECT_EQ(made.cog, PlannedCog::keys);
+  expect_no_key_is_lost(pattern, made);
+}
+
+// A key leads the COG out of the support in the middle of a step, and three iterations do not
+// repair that. The motion in which the COG follows the ZMP misses this key and names it.
+TEST(FromScratch, AKeyThatCannotBeFollowedIsNamed) {
+  Pattern pattern = plan_of_walk({.steps = 2});
+  const FootPlan feet(hoap1(), pattern);
+  const double end = feet.duration(), half = 0.001 * std::round(500 * end);
+  const Eigen::Vector3d middle = feet.support_center(end);
+  pattern.keyframes.push_back(cog_key(half, middle.x(), middle.y() + 0.08, {}));
+  pattern.keyframes.push_back(cog_key(end, middle.x(), middle.y(), {}));
+  RepairOptions options;
+  options.max_iterations = 3;
+  const GeneratedMotion made = generate(hoap1(), pattern, sample_plan(hoap1(), pattern), options);
+  expect_repaired(made.repair);
+  EXPECT_EQ(made.cog, PlannedCog::zmp);
+  expect_no_key_is_lost(pattern, made);
+  ASSERT_EQ(made.missed.size(), 1u);
+  EXPECT_EQ(made.missed[0].t, half);
 }

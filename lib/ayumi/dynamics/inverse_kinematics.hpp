@@ -88,8 +88,8 @@ class InverseKinematics {
   /// read from `state`, and the base attitude follows from `target.trunk`. Legs of six joints meet
   /// the target to 1e-13. In legs of more than six joints, those that leg() does not list keep
   /// their angles in `state`. Legs of fewer joints are solved by damped least squares and come
-  /// within lacking_tolerance(). `state` is only meaningful if the solution says that the target is
-  /// reached; `data` is a workspace.
+  /// within lacking_tolerance(). If the target is not reached, `state` is the nearest posture
+  /// within the position limits that damped least squares found. `data` is a workspace.
   PostureSolution solve(const PostureTarget& target, RobotState& state, RobotData& data) const;
 
  private:

@@ -20,8 +20,8 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Windows with fewer steps than this are left as they are. Derived: four intervals of two samples.
-constexpr long kFewestSamples = 8;
+// Windows with fewer steps than this are left as they are. Derived: four intervals of two steps.
+constexpr int kFewestSteps = 8;
 
 // Base position, quaternion and joints of one sample, and their first and second derivatives.
 struct Columns {
@@ -90,12 +90,23 @@ void solve_middle(const CorrectionTrack& track, const MatrixXd& places, double d
       Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(normal).solve(right);
 }
 
-void smooth_window(CommandSeries& series, const SmoothWindow& window) {
+// The first and the last sample of a window.
+struct Span {
+  int first = 0, end = 0, last_of_motion = 0;
+};
+
+Span span_of(const CommandSeries& series, const SmoothWindow& window) {
   const long last = static_cast<long>(series.samples.size()) - 1;
-  const long first = std::clamp(std::lround(window.begin / series.dt), 0L, last);
-  const long end = std::clamp(std::lround(window.end / series.dt), 0L, last);
+  const auto at = [&](double t) {
+    return static_cast<int>(std::clamp(std::lround(t / series.dt), 0L, last));
+  };
+  return {at(window.begin), at(window.end), static_cast<int>(last)};
+}
+
+void smooth_window(CommandSeries& series, const SmoothWindow& window) {
+  const auto [first, end, last] = span_of(series, window);
   const double length = static_cast<double>(end - first) * series.dt;
-  if (end - first < kFewestSamples) return;
+  if (end - first < kFewestSteps) return;
   // At least two samples lie between two knots, so that the squares determine every control point.
   const Index count =
       std::clamp(std::round(length / window.spacing), 4.0, static_cast<double>((end - first) / 2)) +
@@ -121,7 +132,7 @@ void smooth_window(CommandSeries& series, const SmoothWindow& window) {
   points.topRows<3>() = end_points(ends[0], track.spacing, first == 0);
   points.bottomRows<3>() = end_points(ends[1], -track.spacing, end == last).colwise().reverse();
   solve_middle(track, places, series.dt, points);
-  for (long k = first; k <= end; ++k) {
+  for (long k = first + 1; k < end; ++k) {  // at its ends, the curve has the place of the motion
     const SplineWeights w = correction_weights(track, static_cast<double>(k - first) * series.dt);
     const VectorXd x = points.middleRows<4>(w.first).transpose() * w.value;
     RobotState& state = sample(k).state;
@@ -131,12 +142,23 @@ void smooth_window(CommandSeries& series, const SmoothWindow& window) {
   }
 }
 
+// Velocities and accelerations where the curve changes them: in the window and, because differences
+// use two neighbours, next to it. The others are those of the motion. A curve rests at the ends of
+// the motion.
+void fill_rates_of(CommandSeries& series, const SmoothWindow& window) {
+  const auto [first, end, last] = span_of(series, window);
+  if (end - first < kFewestSteps) return;
+  const int middle = (first + end) / 2;
+  fill_rates(series.samples, std::max(first - 1, 0), middle, series.dt, first == 0);
+  fill_rates(series.samples, middle, std::min(end + 1, last) + 1, series.dt, end == last);
+}
+
 }  // namespace
 
 CommandSeries smoothed(const CommandSeries& series, const std::vector<SmoothWindow>& windows) {
   CommandSeries result = series;
   for (const SmoothWindow& window : windows) smooth_window(result, window);
-  if (!windows.empty()) fill_rates(result.samples, series.dt, false);
+  for (const SmoothWindow& window : windows) fill_rates_of(result, window);
   return result;
 }
 

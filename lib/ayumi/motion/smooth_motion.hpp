@@ -10,9 +10,10 @@ namespace ayumi {
 
 /// The series in which base and joints follow, within each window, the uniform cubic splines that
 /// are nearest to them (least squares over the samples of the window). At its ends, such a curve
-/// has the place, speed and acceleration of the motion; at the ends of the motion, it rests at the
-/// place of the motion. Velocities and accelerations are computed again; COG, ZMP, f_z and contacts
-/// do not change. Windows shorter than eight samples change nothing.
+/// has the place, speed and acceleration that the samples there have, noise included; at the ends
+/// of the motion, it rests at the place of the motion. In the window and one sample beside it,
+/// velocities and accelerations are computed again. COG, ZMP, f_z and contacts do not change.
+/// Windows are in order and do not overlap; those shorter than eight steps change nothing.
 CommandSeries smoothed(const CommandSeries& series, const std::vector<SmoothWindow>& windows);
 
 }  // namespace ayumi

@@ -252,7 +252,8 @@ Worst solve_block(const SampleJob& job, const CogPlan& plan, int first, int end,
     put_plan(job, t, sample);
     const PostureSolution solution =
         solve_posture(job, t, plan.turned(t, trunk_attitude(job, t, sample.feet)), sample, data);
-    worst.include({.lean = solution.lean, .out_of_reach = !solution.reached});
+    worst.include(
+        {.lean = solution.lean, .out_of_reach = !solution.reached || solution.knee_flipped});
     for (const Side side : {Side::left, Side::right}) {
       double& miss = job.feet.hold(side, t) < 1 ? worst.swing : worst.miss;
       miss = std::max(miss, solution.miss[index(side)]);

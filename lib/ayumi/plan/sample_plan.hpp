@@ -8,8 +8,8 @@ namespace ayumi {
 /// What the COG of a plan follows along the ground.
 enum class PlannedCog {
   keys,  ///< its keys, and the ZMP in the axes without keys
-  zmp    ///< the ZMP keys or the centres of the supporting soles, from the first to the last place
-         ///< that the keys give to the COG
+  zmp    ///< the centres of the supporting soles, from the first to the last place that the keys
+         ///< give to the COG, or the keys of the ZMP and then, if time is left, this last place
 };
 
 /// The motion that inverse kinematics finds for the contacts, the planned feet and the planned COG

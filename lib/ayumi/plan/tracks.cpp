@@ -21,6 +21,10 @@ namespace {
 // half and twice the value (constants.md).
 constexpr double kSameTime = 1e-9;
 
+// Time of the weight shift at both ends of the motion [s]. Chosen: 3/omega for a COG at 0.22 m. No
+// measured case changes between half and twice the value (constants.md).
+constexpr double kShift = 0.45;
+
 using Keys = std::vector<TrackKey>;
 
 // Collects the keys of every quantity in the order of the keyframes.
@@ -315,26 +319,12 @@ std::array<Track, 3> default_zmp(const FootPlan& feet) {
   return default_zmp(feet, {feet.support_center(0), feet.support_center(feet.duration())});
 }
 
-void lead_by_zmp(const FootPlan& feet, PatternTracks& tracks) {
-  std::array<Vector3d, 2> ends = {feet.support_center(0), feet.support_center(feet.duration())};
-  for (int axis = 0; axis < 2; ++axis) {
-    if (!tracks.cog[axis]) continue;
-    ends[0][axis] = tracks.cog[axis]->at(0).value;
-    ends[1][axis] = tracks.cog[axis]->at(feet.duration()).value;
-    tracks.cog[axis].reset();
-  }
-  if (!tracks.zmp) tracks.zmp = default_zmp(feet, ends);
-}
-
 std::array<Track, 3> default_zmp(const FootPlan& feet, const std::array<Vector3d, 2>& ends) {
   std::array<Keys, 3> keys;
   const auto add = [&](double t, const Vector3d& point) {
     if (!keys[0].empty() && t <= keys[0].back().t + kSameTime) t = keys[0].back().t + 1e-3;
     for (int i = 0; i < 3; ++i) keys[i].push_back({t, point[i], Interpolation::minimum_jerk});
   };
-  // Time of the weight shift at both ends of the motion [s]. Chosen: 3/omega for a COG at 0.22 m.
-  // No measured case changes between half and twice the value (constants.md).
-  constexpr double kShift = 0.45;
   add(0, ends[0]);
   const auto& phases = feet.phases();
   for (size_t i = 0; i < phases.size(); ++i) {
@@ -351,9 +341,35 @@ std::array<Track, 3> default_zmp(const FootPlan& feet, const std::array<Vector3d
     add(phases[i].until, feet.sole_center(side, phases[i].until));
   }
   const double end = feet.duration();
-  if (keys[0].size() > 1 && end > keys[0].back().t + 1e-3)
+  if (keys[0].size() == 1 && ends[1] != ends[0])  // no step: the whole motion leads there
+    add(end, ends[1]);
+  else if (keys[0].size() > 1 && end > keys[0].back().t + 1e-3)
     add(std::min(end, keys[0].back().t + kShift), ends[1]);
   return {Track(keys[0]), Track(keys[1]), Track(keys[2])};
+}
+
+void lead_by_zmp(const FootPlan& feet, PatternTracks& tracks) {
+  std::array<Vector3d, 2> ends = {feet.support_center(0), feet.support_center(feet.duration())};
+  std::array<bool, 2> given = {false, false};
+  for (int axis = 0; axis < 2; ++axis) {
+    if (!tracks.cog[axis]) continue;
+    given[axis] = true;
+    ends[0][axis] = tracks.cog[axis]->at(0).value;
+    ends[1][axis] = tracks.cog[axis]->at(feet.duration()).value;
+    tracks.cog[axis].reset();
+  }
+  if (!tracks.zmp) {
+    tracks.zmp = default_zmp(feet, ends);
+    return;
+  }
+  // After the last key of the ZMP, the COG goes on to its own last place, if there is time for it.
+  for (int axis = 0; axis < 2; ++axis) {
+    Keys keys = (*tracks.zmp)[axis].keys();
+    const double end = keys.back().t + kShift;
+    if (!given[axis] || end > feet.duration() + kSameTime) continue;
+    keys.push_back({end, ends[1][axis], Interpolation::minimum_jerk});
+    (*tracks.zmp)[axis] = Track(keys);
+  }
 }
 
 }  // namespace ayumi

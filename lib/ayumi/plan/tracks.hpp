@@ -41,13 +41,15 @@ PatternTracks read_tracks(const RobotModel& model, const Pattern& pattern, const
 
 /// ZMP of a pattern with neither ZMP nor COG keys: the centre of the supporting sole in single
 /// support, from centre to centre in double support, and `ends` at the beginning and at the end
-/// [m].
+/// [m]. Without single support, it moves from one end to the other during the whole motion.
 std::array<Track, 3> default_zmp(const FootPlan& feet, const std::array<Eigen::Vector3d, 2>& ends);
 /// The same with the middle of the feet at both ends.
 std::array<Track, 3> default_zmp(const FootPlan& feet);
 
-/// Makes the COG follow the ZMP along the ground in place of its keys: the ZMP has its own keys, or
-/// is default_zmp() from the first place of the COG to the last one.
+/// Makes the COG follow the ZMP along the ground in place of its keys. The ZMP is default_zmp()
+/// from the first place of the COG to the last one. If the ZMP has keys or a table, these lead, and
+/// the first place of the COG is theirs; after them, the ZMP goes on to the last place of the COG
+/// if at least 0.45 s are left.
 void lead_by_zmp(const FootPlan& feet, PatternTracks& tracks);
 
 }  // namespace ayumi

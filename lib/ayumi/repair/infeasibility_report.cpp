@@ -216,8 +216,7 @@ void solve_relaxed(RepairState& state) {
   note_work(state, relaxed, solution);
   state.result.constraint_violation = violation;
   const bool cut_short = solution.status == NlpStatus::iteration_limit;
-  if (cut_short)
-    state.cut_short_by = solution.iterations >= options.max_iterations ? "iterations" : "work";
+  if (cut_short) state.cut_short_by = solution.out_of_work ? "work" : "iterations";
   // If even the nearby motion with the smallest violation violates a limit, no nearby motion
   // passes. A search that was stopped early does not show this.
   if (solution.status != NlpStatus::failed)

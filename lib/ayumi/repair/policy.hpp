@@ -477,8 +477,9 @@ inline constexpr double kReaches[] = {0.02, 0.06, 0.12, 0.2, 0.3, 0.4, 0.6, 0.8}
 
 namespace generation {
 /// Heights of the COG that are tried where no key gives one, as shares of the default height.
-/// Chosen: the first height with which all postures are possible bends the legs no more than
-/// needed, and below the last one a walk is a crouch that an author would ask for with a key. Test:
+/// The first one that passes the check is taken, or the one with the smallest violations. Chosen:
+/// the steps are a few percent of a leg, so the legs bend little more than needed, and below the
+/// last height a walk is a crouch that an author would ask for. Test:
 /// FromScratch.LegsThatAreTooShortForThePlanAreHelped.
 inline constexpr double kHeights[] = {0.96, 0.92, 0.88, 0.84, 0.8};
 }  // namespace generation

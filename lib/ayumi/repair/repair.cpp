@@ -3,7 +3,9 @@
 //   rounds     solve, add the correction to the motion, check again (repair_rounds)
 //   tighten    from a correction that passes to the least one (tighten_to_check_limits)
 //   relaxed    if no round passes, find what prevents a repair (infeasibility_report)
-//   conclude   determine status, change and reasons
+//   conclude   determine status and reasons
+// A motion with jumps or noise is first made smooth (rough_motion); if its repair fails, the motion
+// is repaired as it was given. All changes are measured from the given motion.
 #include "ayumi/repair/repair.hpp"
 
 #include <algorithm>
@@ -63,12 +65,16 @@ void give_reasons(RepairState& state) {
                              "those of the given motion");
 }
 
-void measure_change(RepairState& state) {
-  RepairResult& result = state.result;
-  result.moved = motion_change(state.model, state.series, result.series);
-  result.change = weighted_change(state.model, state.series, result.series, state.spec.weights);
+// `before` is the check of the given motion.
+void measure_change(const RepairState& given, const ConsistencyReport& before,
+                    RepairResult& result) {
+  const RobotModel& model = given.model;
+  const CommandSeries& series = given.series;
+  result.before = before;
+  result.moved = motion_change(model, series, result.series);
+  result.change = weighted_change(model, series, result.series, given.asked.weights);
   result.change.safety =
-      robustness_cost(state.model, state.series, result.series, state.options, result.before);
+      robustness_cost(model, series, result.series, given.options, result.before);
   result.max_joint_change = result.moved.joint.size;
   result.max_cog_change = result.moved.cog.size;
   result.at = result.moved.joint.at;
@@ -78,7 +84,6 @@ void measure_change(RepairState& state) {
 void conclude(RepairState& state) {
   state.result.status = status_of(state);
   if (state.result.status != RepairStatus::repaired && !state.result.partial) give_reasons(state);
-  measure_change(state);
   if (state.options.on_check) state.options.on_check(state.result.check);
 }
 
@@ -112,8 +117,19 @@ RepairResult repair_smoothed(const RobotModel& model, const CommandSeries& serie
   RepairState state = repair_state(model, smooth, options, progress);
   RepairResult result = repair_to_the_end(state);
   result.correction.smooth = windows;
-  result.moved = motion_change(model, series, result.series);
   return result;
+}
+
+// Smooth curves may also make a motion worse that could be repaired without them.
+RepairResult repair_given(RepairState& state) {
+  const std::vector<SmoothWindow> windows =
+      rough_windows(state.model, state.series, state.result.check, state.options);
+  if (!windows.empty()) {
+    RepairResult result =
+        repair_smoothed(state.model, state.series, windows, state.options, state.progress);
+    if (result.status == RepairStatus::repaired || result.partial) return result;
+  }
+  return repair_to_the_end(state);
 }
 
 }  // namespace
@@ -127,10 +143,8 @@ RepairResult repair(const RobotModel& model, const CommandSeries& series,
     state.result.status = RepairStatus::already_consistent;
     return state.result;
   }
-  const std::vector<SmoothWindow> windows = rough_windows(model, series, before, options);
-  if (windows.empty()) return repair_to_the_end(state);
-  RepairResult result = repair_smoothed(model, series, windows, options, progress);
-  result.before = before;
+  RepairResult result = repair_given(state);
+  measure_change(state, before, result);
   return result;
 }
 

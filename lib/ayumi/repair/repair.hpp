@@ -55,7 +55,8 @@ struct RepairOptions {
   /// Largest number of Ipopt's iterations in each round.
   int max_iterations = repair_policy::rounds::kMostIterations;
   /// Largest work for each second of the motion. A motion of less than five seconds has the work of
-  /// five seconds.
+  /// five seconds. If the motion was made smooth and its repair failed, the repair of the motion as
+  /// it was given may do this work once more.
   double most_work = repair_policy::rounds::kMostWork;
   bool mumps = false;  ///< whether MUMPS solves the linear systems, for comparison
   /// Random start of the first program, to test how little depends on it.
@@ -83,7 +84,8 @@ struct InfeasibilityCause {
   std::string text;  ///< the complete reason in words
 };
 
-/// The work of the solver in all rounds. Only the seconds differ from run to run.
+/// The work of the solver in all rounds that led to the result. Only the seconds differ from run to
+/// run.
 struct RepairWork {
   int rounds = 0, iterations = 0;
   int variables = 0, constraints = 0;               ///< numbers in the last round

@@ -2,7 +2,10 @@
 // The repair of a pattern. The pattern itself may ask for options, and its series may already have
 // a correction.
 
+#include <vector>
+
 #include "ayumi/motion/pattern.hpp"
+#include "ayumi/plan/sample_plan.hpp"
 #include "ayumi/repair/repair.hpp"
 
 namespace ayumi {
@@ -15,11 +18,31 @@ RepairOptions preferred_options(const Pattern& pattern);
 RepairResult repair(const RobotModel& model, const Pattern& pattern, const CommandSeries& series,
                     const RepairOptions& options, const Progress& progress = {});
 
+/// A place of the COG that the pattern gives and the motion does not have.
+struct MissedCog {
+  double t = 0;    ///< time of the key [s]; for a table, of the row that is missed most
+  double off = 0;  ///< largest distance along a given coordinate [m]
+};
+
+/// A motion that was made from the plan of a pattern alone.
+struct GeneratedMotion {
+  RepairResult repair;                ///< its changes and its `before` are those from `start`
+  CommandSeries start;                ///< the motion of inverse kinematics that was repaired
+  PlannedCog cog = PlannedCog::keys;  ///< what the COG of `start` follows
+  /// How much lower the COG of `start` is than the pattern's default_cog_height() [m].
+  double lowered = 0;
+  /// Where the motion misses the COG's keys or table by more than the check's tolerance of the COG,
+  /// in the order of time.
+  std::vector<MissedCog> missed;
+};
+
 /// Makes a motion from the plan of a pattern alone: the repair of `plan`, which sample_plan() made
-/// of the pattern. If it fails the check, other starts are tried: the COG follows the ZMP in place
-/// of its keys, and, without a key of its height, it is lower. The start with the smallest
-/// violations is repaired. One that passes the check is the result as it is.
-RepairResult generate(const RobotModel& model, const Pattern& pattern, const CommandSeries& plan,
-                      const RepairOptions& options, const Progress& progress = {});
+/// of the pattern. If `plan` fails the check and no key gives the COG a height, lower ones are
+/// tried, and the start with the smallest violations is repaired. If COG keys are only goals at
+/// the beginning and the end, the starts whose COG follows the ZMP from one to the other are tried,
+/// too; if there are others, only after the repair failed. A start that passes the check is the
+/// result as it is.
+GeneratedMotion generate(const RobotModel& model, const Pattern& pattern, const CommandSeries& plan,
+                         const RepairOptions& options, const Progress& progress = {});
 
 }  // namespace ayumi

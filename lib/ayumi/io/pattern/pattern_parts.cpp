@@ -268,6 +268,11 @@ CorrectionTrack read_correction(const JsonNode& node) {
         window.complain(
             "expected [begin, end, spacing] in seconds, with begin below end and a "
             "spacing above 0");
+      if (!track.smooth.empty() && values[0] < track.smooth.back().end)
+        window.complain("the window begins at " + text::exact(values[0]) +
+                        " s, before the end of the window that precedes it (" +
+                        text::exact(track.smooth.back().end) +
+                        " s); give the windows in order and without overlap");
       track.smooth.push_back({values[0], values[1], values[2]});
     }
   return track;

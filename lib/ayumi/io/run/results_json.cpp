@@ -134,10 +134,14 @@ std::string repair_json(const RepairResult& result) {
       {"after_m", figure(result.check.summary[FindingKind::support_margin])}};
   OrderedJson causes = OrderedJson::array();
   for (const InfeasibilityCause& cause : result.causes) causes.push_back(cause_json(cause));
+  OrderedJson smooth = OrderedJson::array();
+  for (const SmoothWindow& window : result.correction.smooth)
+    smooth.push_back({window.begin, window.end});
   const OrderedJson json = {
       {"status", name_of(result.status)},
       {"partial", result.partial},
       {"moved", moved},
+      {"smooth_s", smooth},
       {"weighted_change", OrderedJson::parse(weighted_change_json(result.change))},
       {"zmp_margin", margin},
       {"variables", result.variables},

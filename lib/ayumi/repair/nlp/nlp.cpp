@@ -282,6 +282,7 @@ NlpSolution solve(const Nlp& nlp, const NlpOptions& options, const Progress& pro
   if (adapter->thrown) std::rethrow_exception(adapter->thrown);
   if (status == Ipopt::User_Requested_Stop && !adapter->out_of_work) throw Interrupted();
   NlpSolution solution = adapter->solution;
+  solution.out_of_work = adapter->out_of_work;
   solution.status = adapter->out_of_work ? NlpStatus::iteration_limit : status_of(status);
   solution.solver_seconds = thread_seconds() - begin - solution.function_seconds;
   if (solution.x.size() == 0) solution.x = nlp.start;

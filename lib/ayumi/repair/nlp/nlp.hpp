@@ -79,6 +79,7 @@ enum class NlpStatus { solved, infeasible, iteration_limit, failed };
 
 struct NlpSolution {
   NlpStatus status = NlpStatus::failed;
+  bool out_of_work = false;  ///< whether the work, and not the iterations, reached its limit
   Eigen::VectorXd x;
   Eigen::VectorXd multipliers;  ///< multipliers of the constraints
   int iterations = 0;
