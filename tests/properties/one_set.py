@@ -15,9 +15,12 @@ each time:
 The exit code is 1 when something does not hold; the seed is printed. A table of the outcomes is
 printed at the end.
 
-With --stand, each repaired motion is simulated in open loop in every plant that the program has, and
-the table counts those that do not stand. --robot adds a robot, such as one of which `ayumi init`
-wrote the sidecar; SCALE is its size relative to HOAP-1.
+With --stand, each motion that `repair` writes is simulated in open loop in every plant that the
+program has. The table counts those that do not stand: "repaired, falls" of the repaired ones, and
+"consistent, falls" of those that `repair` copied. A fall is not a failure, because a consistent
+motion may need a control law: with --most-falls N, the exit code is also 1 when more than N repaired
+motions fall. --robot adds a robot, such as one of which `ayumi init` wrote the sidecar; SCALE is its
+size relative to HOAP-1.
 """
 import argparse
 import collections
@@ -32,6 +35,8 @@ import tempfile
 SOURCE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 ROBOTS = ("hoap1", "humanoid30")
 MOST_FAULTS = 4  # of one pattern
+MOST_TRIES = 20  # of a motion that a robot can do
+REFUSED = (2, 3)  # exit codes with which `new` refuses a motion: a value out of range, bad input
 # One number for each robot, with which lengths and times of its motions grow.
 SCALE = {"hoap1": 1.0, "humanoid30": 2.5}
 
@@ -53,7 +58,7 @@ class Generator:
             path = os.path.join(self.folder, "base.json")
             subprocess.run([self.program, "new", *words, "--allow-inconsistent", "-o", path,
                             "--force", "-q"], check=True, stdout=subprocess.DEVNULL,
-                           stderr=subprocess.DEVNULL)
+                           stderr=subprocess.PIPE, text=True)
             with open(path) as file:
                 self.made[key] = without_comments(file.read())
         return json.loads(self.made[key])
@@ -79,12 +84,17 @@ class Generator:
 
     def make(self, dice):
         robot = ROBOTS[dice.random() < 0.35] if len(ROBOTS) == 2 else dice.choice(ROBOTS)
-        while True:
+        for _ in range(MOST_TRIES):
             try:
                 motion, pattern = self.motion(dice, robot)
                 break
-            except subprocess.CalledProcessError:
-                pass  # `new` finds no such motion for this robot
+            except subprocess.CalledProcessError as error:
+                if error.returncode not in REFUSED:
+                    raise  # a crash, for example
+                refused = error.stderr
+        else:
+            sys.exit(f"`new` refuses {MOST_TRIES} motions of {robot} one after the other; the last "
+                     f"one: {refused.strip()}")
         pattern.pop("scenario", None)
         pattern["robot"] = robot
         return robot, motion, pattern
@@ -368,6 +378,8 @@ def main():
     parser.add_argument("--seeds", default="1:200", metavar="FIRST:LAST")
     parser.add_argument("--keep", help="folder for the patterns of which something does not hold")
     parser.add_argument("--stand", action="store_true", help="simulate what is repaired")
+    parser.add_argument("--most-falls", type=int, metavar="N",
+                        help="repaired motions that may fall (with --stand); any number if not given")
     parser.add_argument("--robot", action="append", default=[], metavar="SIDECAR=SCALE")
     options = parser.parse_args()
     for robot in options.robot:
@@ -398,7 +410,7 @@ def main():
                 elif outcome != "consistent":
                     break
             outcomes[fault][outcome] += 1
-            outcomes[fault]["repaired, falls"] += bool(trial.falls)
+            outcomes[fault][outcome + ", falls"] += bool(trial.falls)
             print(f"{seed}: {robot} {motion}, {fault}: {outcome}"
                   + (f"; falls in {', '.join(trial.falls)}" if trial.falls else ""), flush=True)
             for wrong in trial.wrong:
@@ -416,7 +428,7 @@ def main():
             if os.path.exists(os.path.join(folder, "r.json")):
                 os.remove(os.path.join(folder, "r.json"))
     kinds = ["cannot be sampled", "consistent", "not repaired", "repaired"] + (
-        ["repaired, falls"] if options.stand else [])
+        ["consistent, falls", "repaired, falls"] if options.stand else [])
     print("| fault | patterns | " + " | ".join(kinds) + " |")
     print("| --- |" + " --- |" * (len(kinds) + 1))
     total = collections.Counter()
@@ -424,10 +436,15 @@ def main():
         total.update(counts)
         print(f"| {fault} | {sum(counts[kind] for kind in kinds[:4])} | "
               + " | ".join(str(counts[kind]) for kind in kinds) + " |")
-    print(f"| all | {sum(total[kind] for kind in kinds[:4])} | " + " | ".join(str(total[k]) for k in kinds) + " |")
+    print(f"| all | {sum(total[kind] for kind in kinds[:4])} | "
+          + " | ".join(str(total[kind]) for kind in kinds) + " |")
     if failed:
         print(f"{failed} patterns of which something does not hold")
-    return 1 if failed else 0
+    falls = total["repaired, falls"]
+    too_many = options.most_falls is not None and falls > options.most_falls
+    if too_many:
+        print(f"{falls} repaired motions fall, more than {options.most_falls}")
+    return 1 if failed or too_many else 0
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "ayumi/author/generate/generate.hpp"
+#include "ayumi/check/consistency.hpp"
 #include "ayumi/demand/ground_demand.hpp"
 #include "ayumi/limits/swing_foot.hpp"
 #include "ayumi/repair/correction_problem.hpp"
@@ -94,6 +95,52 @@ TEST(Landing, EarlyContactComesDownOnItsPlace) {
   ASSERT_EQ(r.status, RepairStatus::repaired);
   const int landing = static_cast<int>(std::lround(pattern.phases[step].until / series.dt));
   EXPECT_LT(low_offset(r.series, pattern.phases[step].swing->foot, landing), 0.0012);
+}
+
+// Each foot slides along the ground where it begins to move, and is raised there.
+TEST(Landing, AWalkWhoseFeetScrapeIsRepaired) {
+  Pattern pattern = walk_pattern(hoap1(), {.steps = 2});
+  for (Phase& phase : pattern.phases)
+    if (phase.swing) phase.swing->lift = 0.0006;
+  const auto scrapes = [](const ConsistencyReport& report) {
+    return std::count_if(report.findings.begin(), report.findings.end(),
+                         [](const Finding& f) { return f.kind == FindingKind::foot_scrape; });
+  };
+  const CommandSeries series = sample(hoap1(), pattern);
+  EXPECT_GT(scrapes(check_consistency(hoap1(), series)), 0);
+  for (const double safety : {0.0, 0.5}) {
+    RepairOptions options;
+    options.safety = safety;
+    const RepairResult r = repair(hoap1(), series, options);
+    EXPECT_EQ(r.status, RepairStatus::repaired) << safety;
+    EXPECT_EQ(scrapes(check_consistency(hoap1(), r.series)), 0) << safety;
+  }
+}
+
+// A motion on ground of 50 mm that begins in a swing: the ground of this swing is that of the
+// landing, and not the origin of the world.
+TEST(Landing, ASwingAtTheBeginningIsAboveItsLandingPlace) {
+  const CommandSeries walk = sample(hoap1(), walk_pattern(hoap1(), {.steps = 2}));
+  const ContactPlan plan = contact_plan(walk);
+  const size_t foot =
+      plan.intervals[0].size() > 2 && plan.intervals[0][1].first < plan.intervals[1][1].first ? 0
+                                                                                              : 1;
+  const ContactInterval& swing = plan.intervals[foot][1];
+  CommandSeries series = walk;
+  series.samples.assign(walk.samples.begin() + (swing.first + swing.last) / 2, walk.samples.end());
+  const Vector3d up(0, 0, 0.05);
+  for (CommandSample& s : series.samples) {
+    s.state.base.position += up;
+    s.cog += up;
+    s.zmp += up;
+    for (Isometry3d& sole : s.feet) sole.translation() += up;
+  }
+  CorrectionSpec spec;
+  spec.windows = {{0, series.duration()}};
+  const CorrectionProblem problem(hoap1(), series, spec);
+  ASSERT_FALSE(problem.points().front().contact[foot]);
+  for (const CollocationPoint& point : problem.points())
+    EXPECT_NEAR(point.ground[foot].translation().z(), 0.05, 1e-9) << point.sample;
 }
 
 // The height of the lowest corner of a foot in the middle half of a swing [m].

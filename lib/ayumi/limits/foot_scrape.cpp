@@ -1,14 +1,25 @@
-// A swinging sole that moves along the ground must be above it. Servos sag under the weight of the
-// robot, so a sole that is planned to pass just over the ground scrapes it, and the friction trips
-// the robot. With the corners x_i of the sole, where they were or will be at rest v_i, and the
-// normal n of that place,
-//   height = min n . (x_i - v_i),   way = max |x_i - v_i| along the ground.
-// The height over the lower of both places must not be below the tolerance while the ways to both
-// places are longer than the slip that a standing sole may have. So nothing is asked of a foot that
-// lifts off, that comes down, or that rests in its place without a load. In flight, no foot carries
-// the robot, and nothing is asked either.
+// A swinging sole that moves along the ground must be above it, because the friction of a sole that
+// scrapes the ground trips the robot. Each corner x of the sole is judged on its own way, because a
+// sole that rolls over its heel or its toe moves, but the corner on the ground does not. With the
+// places in which the foot stood and will stand, where the corner is at v, and their normals n,
+//   height = n . (x - v),   way = |x - v| along the ground.
+// The height over the lower of both places counts: the edge of a step between them is not known.
+// A stretch is a series of samples in which the corner is lower than the tolerance, so that it is
+// on the ground like a corner of a standing sole. In it, the corner may be as far from where it is
+// at rest as a standing sole may slip. It is at rest
+//   - in the place of lift-off, if the stretch begins with the swing,
+//   - in the place of landing, if the stretch ends with the swing,
+//   - where it came down, if the stretch does neither.
+// So nothing is asked of a foot that lifts off, that lands, that rolls, or that rests on or just
+// over the ground without a load. In flight, no foot carries the robot, and nothing is asked
+// either.
+#include "ayumi/limits/foot_scrape.hpp"
+
 #include <algorithm>
-#include <limits>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
 
 #include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
@@ -18,93 +29,192 @@
 
 namespace ayumi {
 
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::infinity();
-
-// Smallest height of a swinging sole that moves along the ground [m]. Chosen: the servos of HOAP-1
-// sag by a millimetre (repair/policy.hpp, swing), so a sole that is planned lower is on the ground.
-// In a planned swing of 60 mm (plan/foot_plan), a foot that is 2 mm away from its place is at a
-// third of its lift, so this limit asks for a lift of about 3 mm.
-constexpr double kScrapeTolerance = 0.001;
-
-// The height of a swinging sole while it is away from its places, otherwise infinity [m].
-double height_on_the_way(const RobotModel& model, const ContactPlan& plan, Side side, int k,
-                         const Eigen::Isometry3d& sole, double slip) {
-  const int s = static_cast<int>(side);
-  const int i = plan.index[s][k], count = static_cast<int>(plan.intervals[s].size());
-  double height = -kNone;
-  for (const int j : {i - 1, i + 1}) {
-    if (j < 0 || j >= count) continue;
-    const SoleError e = sole_error(model.sole(side), sole, plan.intervals[s][j].sole);
-    if (e.slip <= slip) return kNone;
-    height = std::max(height, e.lowest);
-  }
-  return height == -kNone ? kNone : height;
-}
+// Smallest height of a corner of a swinging sole that moves along the ground [m]. Chosen: up to
+// this height, the check takes a standing sole to be on the ground (kFloatTolerance of stance.cpp),
+// for every robot; so a corner that is lower and moves is one that slips. How high a foot has to
+// pass so that no real robot trips depends on its servos, and a simulation shows it. A planned
+// swing of 60 mm (plan/foot_plan) meets the limit with a lift of 1 mm, one of 400 mm with 2.3 mm:
+// at the distance of the slip that is allowed, a longer swing has risen by a smaller share of its
+// lift.
+constexpr double kScrapeTolerance = 0.0003;
 
 // Whether the other foot carries the robot while this foot swings.
 bool swings(const ContactPlan& plan, Side side, int k) {
   return plan.support(k) == (side == Side::left ? Support::right : Support::left);
 }
 
-void note_swings(JudgedMotion& motion, const JudgedSample& s, const RobotData& data) {
-  const double slip = motion.tolerance(FindingKind::foot_slip);
-  for (const Side side : {Side::left, Side::right})
-    if (swings(motion.plan, side, s.k))
-      motion.height_on_the_way[static_cast<int>(side)][s.k] = height_on_the_way(
-          motion.model, motion.plan, side, s.k, sole_pose(motion.model, data, side), slip);
+// One corner during one swing.
+class CornerOfSwing {
+ public:
+  CornerOfSwing(const ContactPlan& plan, Side side, int interval, const Sole& sole, int corner,
+                const std::vector<Isometry3d>& poses)
+      : intervals_(plan.intervals[static_cast<int>(side)]),
+        interval_(interval),
+        corner_(corner),
+        in_sole_(sole.polygon[corner].x(), sole.polygon[corner].y(), 0),
+        poses_(poses) {}
+
+  bool stood() const { return interval_ > 0; }
+  bool will_stand() const { return interval_ + 1 < static_cast<int>(intervals_.size()); }
+
+  Scrape at(int k) const {
+    Scrape highest = {corner_, -1, 0};
+    for (const int place : {interval_ - 1, interval_ + 1}) {
+      if (place < 0 || place >= static_cast<int>(intervals_.size())) continue;
+      const double height = normal(place).dot(position(k) - rest(place));
+      if (highest.place < 0 || height > highest.height) highest = {corner_, place, height};
+    }
+    return highest;
+  }
+
+  /// Whether the corner moves in sample k of the stretch first..last.
+  bool moves(int k, int first, int last, double slip) const {
+    const bool lifts = stood() && first == intervals_[interval_].first;
+    const bool lands = will_stand() && last == intervals_[interval_].last;
+    if (lifts && way(k, rest(interval_ - 1), interval_ - 1) <= slip) return false;
+    if (lands && way(k, rest(interval_ + 1), interval_ + 1) <= slip) return false;
+    return lifts || lands || way(k, position(first), at(k).place) > slip;
+  }
+
+ private:
+  Vector3d position(int k) const { return poses_[k] * in_sole_; }
+  Vector3d rest(int place) const { return intervals_[place].sole * in_sole_; }
+  Vector3d normal(int place) const { return intervals_[place].sole.linear().col(2); }
+  double way(int k, const Vector3d& from, int place) const {
+    return normal(place).cross(position(k) - from).norm();
+  }
+
+  const std::vector<ContactInterval>& intervals_;
+  int interval_, corner_;
+  Vector3d in_sole_;
+  const std::vector<Isometry3d>& poses_;
+};
+
+}  // namespace
+
+std::vector<std::vector<Scrape>> scrapes(const Sole& sole, const ContactPlan& plan, Side side,
+                                         const std::vector<Isometry3d>& poses, double low,
+                                         double slip) {
+  std::vector<std::vector<Scrape>> found(poses.size());
+  const std::vector<ContactInterval>& intervals = plan.intervals[static_cast<int>(side)];
+  for (int i = 0; i < static_cast<int>(intervals.size()); ++i) {
+    if (intervals[i].contact || intervals.size() == 1) continue;
+    for (int c = 0; c < static_cast<int>(sole.polygon.size()); ++c) {
+      const CornerOfSwing corner(plan, side, i, sole, c, poses);
+      const auto is_low = [&](int k) { return swings(plan, side, k) && corner.at(k).height < low; };
+      for (int first = intervals[i].first; first <= intervals[i].last; ++first) {
+        if (!is_low(first)) continue;
+        int last = first;
+        while (last < intervals[i].last && is_low(last + 1)) ++last;
+        for (int k = first; k <= last; ++k)
+          if (corner.moves(k, first, last, slip)) found[k].push_back(corner.at(k));
+        first = last;
+      }
+    }
+  }
+  return found;
 }
 
-// A sole that is too deep in the ground is a finding of its own (stance.cpp).
+namespace {
+
+void note_poses(JudgedMotion& motion, const JudgedSample& s, const RobotData& data) {
+  for (const Side side : {Side::left, Side::right})
+    motion.sole_poses[static_cast<int>(side)][s.k] = sole_pose(motion.model, data, side);
+}
+
+// Rounding must not make an error of a corner that a repair leaves at the limit. A sole that is too
+// deep in the ground is a finding of its own (stance.cpp).
 void judge_scrapes(JudgedMotion& motion) {
   const double least = motion.tolerance(FindingKind::foot_scrape);
+  const double slip = motion.tolerance(FindingKind::foot_slip);
   const double deep = motion.tolerance(FindingKind::foot_penetration);
-  for (int foot = 0; foot < 2; ++foot)
+  for (const Side side : {Side::left, Side::right}) {
+    const int foot = static_cast<int>(side);
+    const auto found =
+        scrapes(motion.model.sole(side), motion.plan, side, motion.sole_poses[foot], least, slip);
     for (int k = 0; k < motion.count(); ++k) {
-      const double height = motion.height_on_the_way[foot][k];
-      if (height < least && height >= -deep)
+      double height = least;
+      for (const Scrape& scrape : found[k]) height = std::min(height, scrape.height);
+      if (height < least - kRounding && height >= -deep)
         motion.add(FindingKind::foot_scrape, foot, k, height, least, least - height);
     }
+  }
 }
 
-const RowKind kScrapeRows = {
-    .name = "scrape", .unit = &RowPrices::length, .relaxed = &RowPrices::foot, .order = {2, 5}};
+const RowKind kScrapeRows = {.name = "scrape",
+                             .unit = &RowPrices::length,
+                             .relaxed = &RowPrices::foot,
+                             .beyond_check = true,
+                             .order = {2, 5}};
 
+std::vector<Isometry3d> sole_poses(const RobotModel& model, Side side, const CommandSeries& series,
+                                   RobotData& data) {
+  std::vector<Isometry3d> poses;
+  poses.reserve(series.samples.size());
+  for (const CommandSample& sample : series.samples) {
+    update_positions(model, sample.state, data);
+    poses.push_back(sole_pose(model, data, side));
+  }
+  return poses;
+}
+
+// The corners that scrape in the given motion or in an earlier result have rows, over the plane
+// over which the check measures their heights.
 void place_scrape_rows(RowSite& site) {
   const double least = site.tolerance(FindingKind::foot_scrape);
   const double slip = site.tolerance(FindingKind::foot_slip);
+  std::vector<const CommandSeries*> watched = {&site.series};
+  watched.insert(watched.end(), site.seen.begin(), site.seen.end());
   for (const Side side : {Side::left, Side::right}) {
     const int foot = static_cast<int>(side);
-    const int corners = static_cast<int>(site.model.sole(side).polygon.size());
+    if (site.settings.locked_feet[foot]) continue;
+    const Sole& sole = site.model.sole(side);
+    // The scraping corners by sample and place.
+    std::map<std::pair<int, int>, std::set<int>> corners;
+    for (const CommandSeries* series : watched) {
+      const auto found = scrapes(sole, site.plan, side,
+                                 sole_poses(site.model, side, *series, site.data), least, slip);
+      for (int k = 0; k < static_cast<int>(found.size()); ++k)
+        for (const Scrape& scrape : found[k]) corners[{k, scrape.place}].insert(scrape.corner);
+    }
     for (int i = 0; i < site.count(); ++i) {
-      const CollocationPoint& at = site.points[i];
-      if (!swings(site.plan, side, at.sample) || site.settings.locked_feet[foot]) continue;
-      double height = kNone;
-      for (const CommandSample* sample : site.watched(i)) {
-        update_positions(site.model, sample->state, site.data);
-        height = std::min(height, height_on_the_way(site.model, site.plan, side, at.sample,
-                                                    sole_pose(site.model, site.data, side), slip));
+      const int k = site.points[i].sample;
+      for (auto at = corners.lower_bound({k, 0}); at != corners.end() && at->first.first == k;
+           ++at) {
+        std::vector<Eigen::Vector2d> low;
+        for (const int corner : at->second) low.push_back(sole.polygon[corner]);
+        const int count = static_cast<int>(low.size());
+        const Isometry3d& ground = site.plan.intervals[foot][at->first.second].sole;
+        site.add(kScrapeRows, i, foot, height_rows(side, std::move(low), ground), count,
+                 least + site.settings.swing.scrape_backoff, kUnbounded);
       }
-      if (height < least + site.settings.swing.watched_height)
-        site.add(kScrapeRows, i, foot, height_rows(site.model, side, at.ground[foot]), corners,
-                 least + site.settings.sole_position, kUnbounded);
     }
   }
+}
+
+std::string height_text(double height) {
+  return height < 0 ? text::fixed(-1000 * height, 2) + " mm below the ground"
+                    : "only " + text::fixed(1000 * height, 2) + " mm above the ground";
 }
 
 Advice scrape_advice(const JudgedMotion&, const FindingWindow& window) {
   const Violation& v = window.worst;
   const std::string foot = name_of(foot_of(v));
-  return {"the " + foot + " sole moves along the ground only " + text::fixed(1000 * v.value, 1) +
-              " mm above it, so it scrapes the ground when the servos give way: lift the foot " +
-              in_mm(v.limit - v.value) + " higher",
+  const double wanted = 0.01 * std::ceil(1e5 * (v.limit - v.value));  // in mm
+  return {"the swinging " + foot + " sole scrapes the ground: a corner moves along it " +
+              height_text(v.value) + ", and must be at least " + text::fixed(1000 * v.limit, 2) +
+              " mm above it: lift the foot " + text::fixed(wanted, 2) +
+              " mm higher there, for example with a higher \"lift\" of this swing",
           kOrRepair};
 }
 
 std::string scrape_infeasibility(const Finding& f, double) {
-  return "the " + f.where + " foot scrapes the ground, only " + text::fixed(1000 * f.worst, 1) +
-         " mm above it";
+  return "the swinging " + f.where + " sole scrapes the ground, " + height_text(f.worst);
 }
 
 }  // namespace
@@ -114,11 +224,12 @@ const Limit& foot_scrape_limit() {
       .findings = {{.kind = FindingKind::foot_scrape,
                     .unit = "m",
                     .tolerance = kScrapeTolerance,
-                    .meaning = "smallest height of a swinging sole while it moves along the ground",
+                    .meaning = "smallest height of a corner of a swinging sole while this corner "
+                               "moves along the ground",
                     .place = foot_place,
                     .advice = scrape_advice,
                     .infeasibility = scrape_infeasibility}},
-      .note_sample = note_swings,
+      .note_sample = note_poses,
       .judge_motion = judge_scrapes,
       .place_rows = place_scrape_rows};
   return limit;

@@ -27,8 +27,7 @@ JudgedMotion::JudgedMotion(const RobotModel& model, const CommandSeries& series,
       cog(count(), Vector3d::Zero()),
       cog_deviation(count(), 0.0),
       soles{std::vector<SoleError>(count()), std::vector<SoleError>(count())},
-      height_on_the_way{std::vector<double>(count(), std::numeric_limits<double>::infinity()),
-                        std::vector<double>(count(), std::numeric_limits<double>::infinity())},
+      sole_poses{std::vector<Eigen::Isometry3d>(count()), std::vector<Eigen::Isometry3d>(count())},
       rough(count(), 0) {
   for (Violation& extreme : extremes_) extreme.sample = -1;
   for (const FindingSpec* spec : summary_figures())

@@ -92,9 +92,8 @@ struct JudgedMotion {
   std::vector<double> cog_deviation;
   /// Errors by Side and sample; a swing only has the depth.
   std::array<std::vector<SoleError>, 2> soles;
-  /// Height of a sole by Side and sample, while the sole swings and is away from both of its
-  /// places; otherwise infinity [m].
-  std::array<std::vector<double>, 2> height_on_the_way;
+  /// Poses of the soles in the world, by Side and sample.
+  std::array<std::vector<Eigen::Isometry3d>, 2> sole_poses;
   std::vector<char> rough;  ///< whether a joint accelerates beyond the tolerance, by sample
 
   // Filled by look_ahead of the limit that uses it.

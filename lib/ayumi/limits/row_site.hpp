@@ -109,6 +109,8 @@ struct RowSettings {
     double landing_period = 0, height_period = 0;  ///< periods at which the swings are measured [s]
     double height_share = 0;                       ///< share of the swings' median height
     double watched_height = 0;  ///< height below which a sole has rows for the ground [m]
+    /// Height by which a corner that scraped the ground passes above the check's limit [m].
+    double scrape_backoff = 0;
   } swing;
   struct {
     double touch = 0;           ///< smaller clearances of the given motion are enlarged [m]

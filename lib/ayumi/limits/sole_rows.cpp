@@ -2,6 +2,8 @@
 // it by de = (tr(E) 1 - E) w / 2.
 #include "ayumi/limits/sole_rows.hpp"
 
+#include <utility>
+
 #include "ayumi/math/rotation.hpp"
 
 namespace ayumi {
@@ -59,24 +61,24 @@ SoleRows deviation_rows(Side side, const Isometry3d& planned) {
 namespace {
 
 struct Heights {
-  std::vector<Eigen::Vector2d> polygon;  // corners of the sole, in its frame
+  std::vector<Eigen::Vector2d> points;  // points of the sole, in its frame
   Isometry3d ground;
 
-  int rows() const { return static_cast<int>(polygon.size()); }
+  int rows() const { return static_cast<int>(points.size()); }
   Vector3d normal() const { return ground.linear().col(2); }
-  Vector3d corner(int i) const { return Vector3d(polygon[i].x(), polygon[i].y(), 0); }
+  Vector3d point(int i) const { return Vector3d(points[i].x(), points[i].y(), 0); }
 
   VectorXd value(const Isometry3d& sole) const {
     VectorXd values(rows());
     for (int i = 0; i < rows(); ++i)
-      values[i] = normal().dot(sole * corner(i) - ground.translation());
+      values[i] = normal().dot(sole * point(i) - ground.translation());
     return values;
   }
 
   MatrixXd rate(const Isometry3d& sole, const MatrixXd& motion) const {
     MatrixXd rates(rows(), motion.cols());
     for (int i = 0; i < rows(); ++i) {
-      const Vector3d arm = sole * corner(i) - sole.translation();
+      const Vector3d arm = sole * point(i) - sole.translation();
       rates.row(i) = normal().transpose() * motion.topRows<3>() +
                      arm.cross(normal()).transpose() * motion.bottomRows<3>();
     }
@@ -85,7 +87,7 @@ struct Heights {
 
   void add_curvature(const Isometry3d& sole, const VectorXd& l, PoseCurvature& sum) const {
     Vector3d arms = Vector3d::Zero();
-    for (int i = 0; i < rows(); ++i) arms += l[i] * (sole.linear() * corner(i));
+    for (int i = 0; i < rows(); ++i) arms += l[i] * (sole.linear() * point(i));
     sum.c += l.sum() * normal();
     sum.K += normal() * arms.transpose();
   }
@@ -94,7 +96,11 @@ struct Heights {
 }  // namespace
 
 SoleRows height_rows(const RobotModel& model, Side side, const Isometry3d& ground) {
-  const Heights heights = {model.sole(side).polygon, ground};
+  return height_rows(side, model.sole(side).polygon, ground);
+}
+
+SoleRows height_rows(Side side, std::vector<Eigen::Vector2d> points, const Isometry3d& ground) {
+  const Heights heights = {std::move(points), ground};
   return {.side = side,
           .value = [heights](const Isometry3d& sole) { return heights.value(sole); },
           .rate = [heights](const Isometry3d& sole,

@@ -22,6 +22,10 @@ SoleRows deviation_rows(Side side, const Eigen::Isometry3d& planned);
 /// Heights of the corners of a sole over the plane of a pose [m].
 SoleRows height_rows(const RobotModel& model, Side side, const Eigen::Isometry3d& ground);
 
+/// The same for some points of the sole, in its frame [m].
+SoleRows height_rows(Side side, std::vector<Eigen::Vector2d> points,
+                     const Eigen::Isometry3d& ground);
+
 /// Height of a sole's origin over the plane of a pose [m].
 double height_over(const Eigen::Isometry3d& place, const Eigen::Isometry3d& sole);
 

@@ -89,8 +89,9 @@ void set_foot(const ContactPlan& plan, Side side, CollocationPoint& point) {
   const int i = plan.index[s][k];
   const int last = static_cast<int>(plan.intervals[s].size()) - 1;
   const ContactInterval& here = plan.intervals[s][i];
-  const ContactInterval& before = plan.intervals[s][std::max(0, i - 1)];
-  const ContactInterval& after = plan.intervals[s][std::min(last, i + 1)];
+  // A swing at the beginning or the end of the motion has only one place.
+  const ContactInterval& before = plan.intervals[s][i > 0 ? i - 1 : std::min(last, 1)];
+  const ContactInterval& after = plan.intervals[s][i < last ? i + 1 : std::max(0, last - 1)];
   const bool lower = before.sole.translation().z() < after.sole.translation().z();
   point.contact[s] = here.contact;
   point.ground[s] = here.contact ? here.sole : lower ? before.sole : after.sole;

@@ -53,7 +53,8 @@ RowSettings row_settings(const CorrectionSpec& spec) {
              .landing_period = policy::swing::kLandingPeriod,
              .height_period = policy::swing::kHeightPeriod,
              .height_share = policy::swing::kHeightShare,
-             .watched_height = policy::swing::kWatchedHeight};
+             .watched_height = policy::swing::kWatchedHeight,
+             .scrape_backoff = spec.at_check_limits ? 0 : spec.sole_position};
   s.clearance = {.touch = policy::clearance::kTouch,
                  .kept = spec.clearance,
                  .watched_bodies = policy::clearance::kWatchedBodies,

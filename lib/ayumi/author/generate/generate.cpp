@@ -90,6 +90,12 @@ World stairs(const RobotModel& model, const WalkParameters& p) {
   return world;
 }
 
+// Smallest lift of a swing [m], if the robot is not so small that its usual lift is lower. Reason:
+// with a lower one, the foot of a robot with short legs scrapes the ground in its longest step
+// (limits/foot_scrape.cpp; the longest swing of a leg of 0.2 m is 0.24 m, and needs 1.9 mm). For
+// legs of more than 0.2 m, a hundredth of the leg is more. Test: FootScrape.TheLowestLiftPasses.
+constexpr double kLeastLift = 0.002;
+
 void check_parameters(const RobotModel& model, const WalkParameters& p) {
   const double leg = leg_length(model);
   if (p.rise != 0) check_stairs(model, p);
@@ -99,7 +105,8 @@ void check_parameters(const RobotModel& model, const WalkParameters& p) {
   const double fastest = 0.2 * std::min(1.0, std::sqrt(size_beside_hoap1(model)));
   require_range("walk", "period", p.period, 0.01 * std::floor(100 * fastest), 10, " s");
   require_range("walk", "double_support", p.double_support, 0.05, 0.6, "");
-  require_range("walk", "lift", p.lift, 0.01 * leg, 0.4 * leg, " m");
+  const double least_lift = std::max(0.01 * leg, std::min(kLeastLift, walk_defaults(model).lift));
+  require_range("walk", "lift", p.lift, least_lift, 0.4 * leg, " m");
   require_range("walk", "side", p.side, -0.4 * leg, 0.4 * leg, " m");
   require_range("walk", "turn", p.turn * 180 / M_PI, -0.6 * 180 / M_PI, 0.6 * 180 / M_PI, " deg");
   require_range("walk", "zmp_inwards", p.zmp_inwards, 0, half_sole_width(model), " m");
