@@ -83,18 +83,18 @@ View view_of(const RobotModel& model, const SignTest& test) {
   return view;
 }
 
-std::string counts_words(const Dof& dof, const SignTest& test) {
+std::string counts_words(const Dof& dof, const SignTest& test, double zero) {
   if (dof.encoder.device < 1) return "";
   const double scale = dof.encoder.counts_per_degree * 180 / EIGEN_PI;
-  return text::fixed(test.from * scale + 0.0, 0) + " to " +  // not "-0"
-         text::fixed(test.to * scale + 0.0, 0);
+  return text::fixed((test.from - zero) * scale + 0.0, 0) + " to " +  // not "-0"
+         text::fixed((test.to - zero) * scale + 0.0, 0);
 }
 
 }  // namespace
 
 std::string sign_test_words(const RobotModel& model, const std::vector<SignTest>& tests) {
   const Eigen::VectorXd& start = tests.front().table.rows.front().theta;
-  const Eigen::VectorXd zeros = encoder_zeros(model.limits());
+  const Eigen::VectorXd zeros = encoder_zeros(model);
   std::string bent;
   for (const SignTest& test : tests) {
     const Dof& dof = model.dofs()[static_cast<size_t>(test.dof)];
@@ -169,9 +169,11 @@ std::string sign_test_page(const RobotModel& model, const std::vector<SignTest>&
       "<code>device</code> of the joint that should move. The pictures show the motion larger than "
       "it is.</p>\n<p>" +
       sign_test_words(model, tests) + "</p>\n";
+  const Eigen::VectorXd zeros = encoder_zeros(model);
   for (const SignTest& test : tests) {
     const Dof& dof = model.dofs()[static_cast<size_t>(test.dof)];
-    const std::string counts = counts_words(dof, test), motion = view_of(model, test).motion;
+    const std::string counts = counts_words(dof, test, zeros[test.dof]),
+                      motion = view_of(model, test).motion;
     page += "<figure><img src=\"" + test.name + ".png\" alt=\"" + dof.name + "\"><figcaption><b>" +
             test.name + extension + "</b><br>" + dof.name + ": " + in_units(dof, test.from) +
             " to " + in_units(dof, test.to) + (motion.empty() ? "" : ",<br>" + motion) +

@@ -277,7 +277,7 @@ void add_compare(Command& app, Context& context) {
       ->type_name("HZ");
   command->callback([&context] {
     options.reading.degrees = unit == "deg";
-    options.reading.at_joints = options.at == "joint";
+    options.reading.measured_at = measured_at(options.at);
     compare_run(context, options);
   });
 }

@@ -100,7 +100,7 @@ void take_kept_rows(const Task& task, const ExportOptions& options, Source& sour
     source.reference.dt = rows->dt;
     const bool as_it_was = !options.interval && !options.rate && options.ramp.value_or(0) == 0 &&
                            options.hold.value_or(0) == 0 && options.robot.empty();
-    if (as_it_was) source.original = kept_file(*task.pattern.table, options.format);
+    if (as_it_was) source.original = kept_file(*task.pattern.table, options.format, task.robot);
     return;
   }
   source.kept = kept_rows(task);
@@ -206,6 +206,8 @@ Source source_of_table(const ExportOptions& options, const Context& context,
                 {},
                 {}};
   require_joints(source.reference, source.model.dof_names(), options.input);
+  // The rows are angles of joints, and the file is for this unit, whatever the head says.
+  source.reference.servo.zeros = encoder_zeros(source.model);
   if (!made.robot_sha256.empty() && made.robot_sha256 != source.model.description().sha256)
     fail(ErrorCode::bad_file, {options.input},
          "robot '" + source.model.name() +
@@ -218,10 +220,6 @@ struct CautiousTable {
   ReferenceTrajectory reference;
   TableCaution caution;
 };
-
-bool same_zeros(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-  return (a.isZero(0) && b.isZero(0)) || (a.size() == b.size() && a == b);
-}
 
 // The requested table of a run; `log` is the log from which it comes.
 CautiousTable table_of_run(const ExportOptions& options, const RunFolder& run,
@@ -253,8 +251,7 @@ CautiousTable table_of_run(const ExportOptions& options, const RunFolder& run,
   if (!table) return {made(log), caution};
   const TableServo wanted = table_servo(model, profile, content);
   const bool as_wanted = table->servo.content == wanted.content &&
-                         table->servo.delay == wanted.delay && table->servo.lag == wanted.lag &&
-                         same_zeros(table->servo.zeros, wanted.zeros);
+                         table->servo.delay == wanted.delay && table->servo.lag == wanted.lag;
   return {as_wanted ? *table : made(log), caution};
 }
 
@@ -332,10 +329,11 @@ void export_gltf(const ExportOptions& options, Context& context) {
 }
 
 /// The table as a motion of any format.
-MotionFile motion_file_of(const Source& source, const ReferenceTrajectory& table, bool played) {
+MotionFile motion_file_of(const MotionFormat& format, const Source& source,
+                          const ReferenceTrajectory& table) {
   MotionFile motion = motion_of_table(table);
   // What a robot plays are angles of its encoders.
-  if (played) motion.values = encoder_rows(std::move(motion.values), table.servo.zeros);
+  if (format.played) motion.values = encoder_rows(std::move(motion.values), table.servo.zeros);
   if (source.torque.rows() == motion.rows()) motion.torque = source.torque;
   return motion;
 }
@@ -434,6 +432,13 @@ std::string words_on_zeros(const ExportOptions& options, const ReferenceTrajecto
          text::join(joints, ", ") + " deg)\n";
 }
 
+/// The content of the table that the format cannot hold, in words; empty if there is none.
+std::string lost_content(const ExportOptions& options, const Source& source,
+                         const SafeTable& safe) {
+  const MotionFormat* const format = motion_format(options);
+  return format ? cannot_hold(*format, motion_file_of(*format, source, safe.table)) : "";
+}
+
 std::string in_words(const ExportOptions& options, const Source& source, const SafeTable& safe,
                      const std::vector<std::string>& refused) {
   const SafetyReport& report = safe.report;
@@ -449,11 +454,8 @@ std::string in_words(const ExportOptions& options, const Source& source, const S
       text +=
           (plays(options) ? "  written although " : "  the table is not for a robot, because ") +
           reason + "\n";
-  if (const MotionFormat* format = motion_format(options)) {
-    const std::string lost =
-        cannot_hold(*format, motion_file_of(source, safe.table, format->played));
-    if (!lost.empty()) text += "  the format cannot hold " + lost + "\n";
-  }
+  if (const std::string lost = lost_content(options, source, safe); !lost.empty())
+    text += "  the format cannot hold " + lost + "\n";
   const TableServo& servo = safe.table.servo;
   if (!servo.content.empty())
     text += "  made for the servos of profile " + servo.profile + ": " + words_of(servo) + "\n";
@@ -484,8 +486,8 @@ std::string words_on_sequence(const Source& source, const SafeTable& safe) {
   if (!source.plan || !source.plan->pattern.table || !source.plan->pattern.table->sequence)
     return "";
   if (!source.kept)
-    return "  the motion has changed, so its rows are computed again and differ from the imported "
-           "sequence\n";
+    return "  the motion or the encoders of the robot have changed, so the rows are computed again "
+           "and differ from the imported sequence\n";
   const HoapFile& file = source.kept->file;
   std::string text = "  the rows of the motion are the unchanged rows of the imported sequence";
   if (safe.report.ramp == 0 && safe.report.hold == 0)
@@ -528,9 +530,8 @@ void write_motion(const MotionFormat& format, const ExportOptions& options, cons
   std::vector<std::pair<fs::path, std::string>> files;
   if (source.original) files.emplace_back(options.output, *source.original);
   for (WrittenFile& file :
-       source.original
-           ? std::vector<WrittenFile>()
-           : format.write(source.model, motion_file_of(source, safe.table, format.played))) {
+       source.original ? std::vector<WrittenFile>()
+                       : format.write(source.model, motion_file_of(format, source, safe.table))) {
     fs::path path = options.output;
     if (!file.extension.empty()) path.replace_extension(file.extension);
     refuse_overwriting(context, path);
@@ -590,10 +591,7 @@ std::string as_json(const ExportOptions& options, const Source& source, const Sa
                           : nlohmann::ordered_json(nullptr)},
       {"imported_rows_unchanged", source.kept.has_value() || source.original.has_value()},
       {"joints", safe.table.joints},
-      {"cannot_hold", motion_format(options)
-                          ? nlohmann::ordered_json(cannot_hold(
-                                *motion_format(options), motion_file_of(source, safe.table, false)))
-                          : nlohmann::ordered_json("")},
+      {"cannot_hold", lost_content(options, source, safe)},
       {"profile", options.safety.profile},
       {"sufficient_profiles", sufficient},
       {"safety", nlohmann::ordered_json::parse(safety_json(safe.report))}};

@@ -111,26 +111,6 @@ std::string sidecar_text(const RobotModel& model, const IdentifyCommand& options
                              .measured = fs::path(options.measured).filename().string()});
 }
 
-// A line about joints that stand by their known offset from their commands, as they do if
-// instruments at the joints measured them.
-std::string words_on_known_offsets(const RobotModel& model, const Identification& found) {
-  // Smallest offset about which something is said [rad], and the share by which the difference may
-  // deviate from the offset. Chosen: far above the rounding of encoders; two offsets that differ by
-  // less are not told apart.
-  constexpr double kSaid = 0.1 * kIdentifiedDegree, kShare = 0.25;
-  std::vector<std::string> joints;
-  for (const IdentifiedJoint& joint : found.joints) {
-    const double known =
-        model.limits().servo[static_cast<size_t>(model.find_dof(joint.joint))].offset;
-    if (std::abs(known) > kSaid && std::abs(joint.offset.value - known) < kShare * std::abs(known))
-      joints.push_back(joint.joint);
-  }
-  if (joints.empty()) return "";
-  return "  the angles of " + text::join(joints, ", ") +
-         " differ from the commands by the offsets that ROBOT already states; if they were "
-         "measured at the joints and not by the encoders, give --measured-at joint\n";
-}
-
 void identify_servos(const Context& context, const IdentifyCommand& options) {
   if (!options.out.empty()) refuse_overwriting(context, options.out);
   const RobotModel model = load_robot(options.robot, robot_search(context));
@@ -140,7 +120,7 @@ void identify_servos(const Context& context, const IdentifyCommand& options) {
   // Rows without time have the times of the rows of the command.
   RecordingOptions measured = options.reading;
   if (measured.rate <= 0) measured.rate = 1 / motion.command.dt;
-  measured.at_joints = options.at == "joint";
+  measured.measured_at = measured_at(options.at);
   motion.measured = read_angles(read_input(options.measured), options.measured, model, measured);
   if (!options.loads.empty())
     motion.sensors = read_sensors_table(read_input(options.loads), options.loads, model, measured);
@@ -162,7 +142,6 @@ void identify_servos(const Context& context, const IdentifyCommand& options) {
                       std::to_string(found.joints.size()) +
                       " joints; values with their 95 % intervals\n";
   if (!found.caution.empty()) words += "  " + found.caution + "\n";
-  if (options.at == "encoder") words += words_on_known_offsets(model, found);
   Json joints = Json::array();
   bool advice = false;
   for (const IdentifiedJoint& joint : found.joints) {
@@ -246,7 +225,8 @@ void add_identify(Command& app, Context& context) {
       ->add_option("--measured-at", options.at,
                    "What measured the angles. encoder: the encoders of the servos, whose readings "
                    "lack the offsets that ROBOT states. joint: instruments at the joints, which do "
-                   "not share the zeros of the encoders.")
+                   "not share the zeros of the encoders. Only these show the offsets, so only then "
+                   "does the sidecar state new offsets.")
       ->check(one_of({"encoder", "joint"}))
       ->capture_default_str();
   command->add_option("--unit", unit, "Unit of the joint columns whose names do not state a unit.")

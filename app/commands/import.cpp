@@ -103,7 +103,7 @@ void add_import(Command& app, Context& context) {
       "  ayumi import angles.csv --robot hoap1 --unit deg --rate 200 -o angles.json\n"
       "  ayumi import dance.csv --robot g1.urdf --rate 30 --order -o dance.json");
   static ImportCommand options;
-  static std::string unit = "rad", signs = "encoder";
+  static std::string unit = "rad", signs = "encoder", at;
   command->add_option("FILE", options.file, "Motion file; - is standard input.")->required();
   command
       ->add_option("--robot", options.robot,
@@ -182,6 +182,13 @@ void add_import(Command& app, Context& context) {
       "servos to get the joint angles. This is always done for reference tables, that is, "
       "for reference.csv of a run and for the csv and json tables of export.");
   command
+      ->add_option("--measured-at", at,
+                   "What the angles are. encoder: readings or targets of the encoders of ROBOT, to "
+                   "which the offsets that ROBOT states are added. joint: angles of the joints "
+                   "(default: encoder for --commands and for formats that a robot plays or "
+                   "records, otherwise joint; the head of a table of Ayumi states its offsets).")
+      ->check(one_of({"encoder", "joint"}));
+  command
       ->add_option("--smooth", options.how.reading.smooth,
                    "Largest change of an angle by smoothing [deg] (default: 0.1 for HOAP counts, 0 "
                    "for angle tables).")
@@ -190,6 +197,7 @@ void add_import(Command& app, Context& context) {
   command->callback([&context] {
     options.how.reading.degrees = unit == "deg";
     options.how.reading.encoder_signs = signs == "encoder";
+    if (!at.empty()) options.how.reading.measured_at = measured_at(at);
     import_motion(context, options);
   });
 }

@@ -95,8 +95,7 @@ Played read_played(const ReplayCommand& options, const RobotModel& model,
     const HoapFile sequence =
         parse_hoap(bytes, options.file, model,
                    options.rate > 0 ? static_cast<int>(std::lround(1000 / options.rate)) : 0);
-    return {hoap_targets(model, sequence, options.profile), "hoap", sequence.layout.name,
-            note_of(options.file)};
+    return {hoap_targets(model, sequence), "hoap", sequence.layout.name, note_of(options.file)};
   }
   const ImportedMotion read =
       read_motion_rows(bytes, options.file, model, {.rate = options.rate, .sent = true});

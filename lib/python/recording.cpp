@@ -57,8 +57,9 @@ void bind_import(py::module_& m) {
       "import_motion",
       [](const Path& path, const RobotModel& robot, const std::string& format, double rate,
          bool degrees, bool order, const std::vector<std::string>& joints,
-         const std::string& motion, bool commands, std::optional<double> smooth, bool ground,
-         double ramp, std::optional<double> contact_height, std::optional<double> contact_speed,
+         const std::string& motion, bool commands, const std::string& at,
+         std::optional<double> smooth, bool ground, double ramp,
+         std::optional<double> contact_height, std::optional<double> contact_speed,
          std::optional<double> contact_load) {
         PatternImport options;
         options.reading.format = format;
@@ -68,6 +69,7 @@ void bind_import(py::module_& m) {
         options.reading.joints = joints;
         options.reading.motion = motion;
         options.reading.commands = commands;
+        if (!at.empty()) options.reading.measured_at = measured_at(at);
         options.reading.smooth = smooth;
         options.ground = ground;
         options.ramp = ramp;
@@ -83,8 +85,8 @@ void bind_import(py::module_& m) {
       py::arg("path"), py::arg("robot"), py::kw_only(), py::arg("format") = "",
       py::arg("rate") = 0.0, py::arg("degrees") = false, py::arg("order") = false,
       py::arg("joints") = std::vector<std::string>(), py::arg("motion") = "",
-      py::arg("commands") = false, py::arg("smooth") = py::none(), py::arg("ground") = false,
-      py::arg("ramp") = 0.0, py::arg("contact_height") = py::none(),
+      py::arg("commands") = false, py::arg("measured_at") = "", py::arg("smooth") = py::none(),
+      py::arg("ground") = false, py::arg("ramp") = 0.0, py::arg("contact_height") = py::none(),
       py::arg("contact_speed") = py::none(), py::arg("contact_load") = py::none(),
       "Reads a motion of another program or robot, as `ayumi import` does. The format follows from "
       "the content unless `format` names one of motion_formats(). `rate` [1/s]: rows per second, "
@@ -94,6 +96,8 @@ void bind_import(py::module_& m) {
       "`joints`: names of the joint columns; `motion`: name or number of the motion, if the file "
       "has several; "
       "`commands`: the angles are servo targets; "
+      "`measured_at`: 'encoder' for angles of the encoders of the robot, to which its offsets are "
+      "added, 'joint' for angles of the joints, '' if the format decides; "
       "`smooth`: largest change for smoothing [deg]; `ground`: the soles that carry the robot are "
       "put on the ground; `ramp`: time from rest to the speed of a recording that was cut [s]. A "
       "sole carries "
@@ -125,6 +129,7 @@ AngleTable angles_of(const Angles& given, const char* what, const RobotModel& ro
   table.theta = theta;
   table.has.assign(static_cast<size_t>(theta.cols()), 1);
   table.resolution = Eigen::VectorXd::Zero(theta.cols());
+  take_to_joints(robot, options.measured_at, table);
   return table;
 }
 
@@ -198,8 +203,9 @@ void bind_identify(py::module_& m) {
   m.def(
       "identify",
       [](const RobotModel& robot, const Angles& command, const Angles& measured,
-         const std::optional<Path>& loads, bool per_type, const std::string& stand, double rate,
-         bool degrees, double longest_lag, int threads, py::object progress) {
+         const std::optional<Path>& loads, const std::string& at, bool per_type,
+         const std::string& stand, double rate, bool degrees, double longest_lag, int threads,
+         py::object progress) {
         if (stand != "auto" && stand != "feet" && stand != "fixed")
           fail(ErrorCode::usage, "stand '" + stand + "' is not one of auto, feet and fixed");
         if (stand == "feet" && !robot.has_soles())
@@ -207,11 +213,13 @@ void bind_identify(py::module_& m) {
                robot.name() +
                    ": the robot has no soles; add \"soles\" to its sidecar, or use "
                    "stand='fixed'");
+        const MeasuredAt place = measured_at(at);
         return Watch(std::move(progress)).run([&](const Progress& watched) {
           RecordedMotion motion;
           RecordingOptions reading{.degrees = degrees, .rate = rate};
           motion.command = angles_of(command, "command", robot, reading);
           if (reading.rate <= 0) reading.rate = 1 / motion.command.dt;
+          reading.measured_at = place;
           motion.measured = angles_of(measured, "measured", robot, reading);
           IdentifyOptions options;
           if (loads) {
@@ -230,12 +238,16 @@ void bind_identify(py::module_& m) {
         });
       },
       py::arg("robot"), py::arg("command"), py::arg("measured"), py::kw_only(),
-      py::arg("loads") = py::none(), py::arg("per_type") = false, py::arg("stand") = "auto",
-      py::arg("rate") = 0.0, py::arg("degrees") = false, py::arg("longest_lag") = 0.0,
-      py::arg("threads") = 0, py::arg("progress") = py::none(),
+      py::arg("loads") = py::none(), py::arg("measured_at") = "encoder",
+      py::arg("per_type") = false, py::arg("stand") = "auto", py::arg("rate") = 0.0,
+      py::arg("degrees") = false, py::arg("longest_lag") = 0.0, py::arg("threads") = 0,
+      py::arg("progress") = py::none(),
       "The servo constants with which the simulated servos come nearest to what was measured. "
       "`command` and `measured` are files, or (dt, angles) with the time between two rows [s] and "
-      "an array of angles [rad, m], shape (n, dof). `loads` is a file of load cells; `per_type`: "
+      "an array of angles [rad, m], shape (n, dof). `command` are angles of the encoders, as the "
+      "robot received them; `measured_at`: 'encoder' if its encoders measured the angles, 'joint' "
+      "if instruments at the joints did. Only these show the offsets of the encoders. `loads` is a "
+      "file of load cells; `per_type`: "
       "one set for all joints of one motor type; `stand`: 'feet', 'fixed' (the root is held "
       "upright) or 'auto'; `rate` [1/s] and `degrees` apply to files that do not state them; "
       "`longest_lag` [s]: a recording whose angles are later than this is refused (0: 30 ms or "

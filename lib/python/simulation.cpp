@@ -208,7 +208,8 @@ void bind_step(py::module_& m) {
       .def("step", &Plant::step, py::arg("targets"), py::arg("input"), py::arg("dt"),
            py::return_value_policy::copy,
            "Advances by `dt` [s]. The servo targets [rad, m], shape (dof,), are held during this "
-           "time.")
+           "time. They are angles of the encoders: those of the joints, minus the offsets of the "
+           "servos.")
       .def("__deepcopy__", [](const py::object& self, const py::dict&) {
         // The original keeps its robot alive, and the copy keeps the original alive.
         py::object copy = py::cast(Plant(self.cast<const Plant&>()));
@@ -373,8 +374,9 @@ void bind_simulation(py::module_& m) {
       "integrator per tick. `plant`: 'ayumi', 'mujoco', or a function (robot, profile, world) that "
       "returns an "
       "object with `state`, `set_state(state)` and `step(targets, input, dt)`, as Plant has them. "
-      "`targets`: a function (t, estimate, plan, targets) that returns the servo targets [rad, m], "
-      "shape (dof,), in place of those of the controller; with controller='none' it is the whole "
+      "`targets`: a function (t, estimate, plan, targets) that returns the servo targets as angles "
+      "of the joints [rad, m], shape (dof,), in place of those of the controller; with "
+      "controller='none' it is the whole "
       "controller. A plant or a controller in Python is called in every tick and makes the run "
       "several times slower. `progress`: a function (stage, fraction, detail); the run stops when "
       "it "

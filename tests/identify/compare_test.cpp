@@ -250,7 +250,8 @@ TEST(Compare, ReadingsOfEncodersBecomeAnglesOfJoints) {
   const AngleTable read = read_angles(text, "m.csv", model);
   EXPECT_NEAR(read.theta(1, model.find_dof("l_elbow")), -0.48, 1e-15);
   EXPECT_EQ(read.theta(1, model.find_dof("r_elbow")), -0.4);
-  const AngleTable at_joints = read_angles(text, "m.csv", model, {.at_joints = true});
+  const AngleTable at_joints =
+      read_angles(text, "m.csv", model, {.measured_at = MeasuredAt::joint});
   EXPECT_EQ(at_joints.theta(1, model.find_dof("l_elbow")), -0.5);
 }
 

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/io/formats/hoap.hpp"
 #include "ayumi/io/table/motion_import.hpp"
 #include "tests/support/degree.hpp"
 #include "tests/support/hoap1.hpp"
@@ -265,6 +266,45 @@ TEST(ForeignTable, MistakesAreOneLine) {
             "a.csv:3: the row has 3 values, but the head row names 2 columns");
   EXPECT_NE(refusal("t,l_elbow[turns]\n0,0\n1,0\n").find("unknown column 'l_elbow[turns]'"),
             std::string::npos);
+}
+
+// Offsets of encoders are added to the columns that the file has. Other joints keep their home
+// angle.
+TEST(ForeignTable, OffsetsAreAddedToReadingsOfEncodersOnly) {
+  RobotDescription description = hoap1().description();
+  for (const char* joint : {"l_knee", "l_elbow"}) description.servos.at(joint).offset = 0.05;
+  const RobotModel unit(description);
+  const int knee = unit.find_dof("l_knee"), elbow = unit.find_dof("l_elbow");
+  std::string text = "t[s],l_knee[rad]\n";
+  for (int k = 0; k < 10; ++k) text += std::to_string(0.01 * k) + ",0.5\n";
+  const auto theta = [&](const std::string& bytes, const ImportOptions& options) {
+    return Eigen::VectorXd(read_motion_rows(bytes, "m.csv", unit, options).motion.theta.row(3));
+  };
+  EXPECT_EQ(theta(text, {})[knee], 0.5);
+  EXPECT_EQ(theta(text, {.commands = true, .measured_at = MeasuredAt::joint})[knee], 0.5);
+  for (const ImportOptions& options :
+       {ImportOptions{.commands = true}, ImportOptions{.measured_at = MeasuredAt::encoder},
+        ImportOptions{.sent = true}}) {
+    EXPECT_NEAR(theta(text, options)[knee], 0.55, 1e-15);
+    EXPECT_EQ(theta(text, options)[elbow], unit.posture()[elbow]);
+  }
+}
+
+// A sequence that lacks devices: their joints keep their home angle too.
+TEST(ForeignTable, JointsWithoutADeviceKeepTheirHomeAngle) {
+  RobotDescription description = hoap1().description();
+  description.servos.at("l_elbow").offset = 0.05;
+  description.encoders.erase("l_elbow");
+  const RobotModel unit(description);
+  ReferenceTrajectory table;
+  table.dt = 0.001;
+  table.joints = hoap1().dof_names();
+  table.rows.resize(5);
+  for (ReferenceRow& row : table.rows) row.theta = hoap1().posture();
+  const ReferenceTrajectory targets =
+      hoap_targets(unit, parse_hoap(hoap_csv(hoap1(), table), "h.csv", unit));
+  const int elbow = unit.find_dof("l_elbow");
+  EXPECT_NEAR(targets.rows[3].theta[elbow], unit.posture()[elbow], 1e-15);
 }
 
 }  // namespace

@@ -235,6 +235,37 @@ TEST(ServoReader, ABamFileStandsBesideTheFileThatNamesIt) {
             "to the file that names it");
 }
 
+// The offset of an encoder belongs to the unit. Profiles with servos of their own inherit it, and
+// none may have another one.
+TEST(ServoReader, TheOffsetOfAnEncoderIsTheSameInAllProfiles) {
+  const TemporaryFolder folder;
+  const auto unit = [](const std::string& servos, const std::string& profile) {
+    return servo_sidecar(servos, R"(, "profiles": [{"name": "a", "limits": []},
+        {"name": "b", "limits": [], "servos": [)" +
+                                     profile + "]}]");
+  };
+  const std::string offset = R"({"joints": ["l_knee"], "offset_deg": 0.4})",
+                    other = R"({"joints": ["l_knee"], "offset_deg": 0.5})",
+                    gain = R"({"joints": ["*"], "kp": 50})";
+  for (const std::string& same : {gain, gain + ", " + offset}) {
+    const RobotModel model = robot_of(folder, unit(gain + ", " + offset, same));
+    for (const char* profile : {"a", "b"})
+      EXPECT_EQ(knee(model, profile).offset, 0.4 * EIGEN_PI / 180);
+  }
+  EXPECT_EQ(error_of(folder, unit(gain + ", " + offset, other)),
+            "robot.json: /profiles: the encoder of l_knee has an offset of 0.5 deg in the profile "
+            "'b', but of 0.4 deg in 'servos'; an offset belongs to the robot unit, so state it "
+            "once, in 'servos'");
+  EXPECT_NE(error_of(folder, unit(gain, other)).find("but of 0 deg in 'servos'"),
+            std::string::npos);
+  // A robot whose profiles alone state servos: the offset of `servos` would be lost.
+  EXPECT_EQ(error_of(folder, R"({"format": "ayumi.robot/1", "urdf": ")" AYUMI_SOURCE_DIR
+                             R"(/examples/biped/biped.urdf", "servos": [)" +
+                                 offset + "]}"),
+            "robot.json: /servos: these groups state an offset of l_knee, but no servo of this "
+            "joint; state its kp, too");
+}
+
 TEST(ServoReader, SaysWhatAServoCannotBe) {
   const std::string at = "robot.json: /servos/1";
   EXPECT_EQ(group_error(R"("kp": -1)"),

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/limits/table_safety.hpp"
 #include "tests/support/degree.hpp"
 #include "tests/support/hoap1.hpp"
 
@@ -33,6 +34,17 @@ TEST(SignTest, AStartPostureInWhichPartsOverlapIsRefused) {
   EXPECT_EQ(refusal_at(hoap1().posture()), "");
   EXPECT_NE(refusal_at(with_left_hip_roll(-15 * kDegree)).find("overlap in the start posture"),
             std::string::npos);
+}
+
+// The encoders of a unit read 0 when its tests begin.
+TEST(SignTest, TheTestsOfAUnitBeginWithReadingsOfZero) {
+  RobotDescription description = hoap1().description();
+  description.servos.at("l_knee").offset = 0.4 * kDegree;
+  description.servos.at("r_ankle_roll").offset = -0.3 * kDegree;
+  const RobotModel unit(description);
+  for (const SignTest& test : sign_tests(unit, sign_test_start(unit), 0.01))
+    for (const int joint : {unit.find_dof("l_knee"), unit.find_dof("r_ankle_roll")})
+      EXPECT_EQ(encoder_counts(unit, test.table, {})(0, joint), 0) << test.name;
 }
 
 // A joint that would move a leg into the other one moves away from it.

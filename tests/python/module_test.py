@@ -598,6 +598,16 @@ class Recordings(unittest.TestCase):
             file = pathlib.Path(scratch) / "mine.json"
             file.write_text(text)
             self.assertEqual(ayumi.load_robot(str(file), meshes=False).joints, robot.joints)
+        # Only angles that were measured at the joints show offsets of the encoders.
+        further = (log.dt, log["theta"] + 0.005)
+        def offset(at):
+            found = ayumi.identify(robot, sent, further, measured_at=at).sidecar("hoap1")
+            groups = {group["joints"][0]: group for group in json.loads(found)["servos"]}
+            return groups["l_knee"].get("offset")
+        self.assertAlmostEqual(offset("joint"), 0.005, places=3)
+        self.assertIsNone(offset("encoder"))
+        with self.assertRaisesRegex(ayumi.Error, "one of encoder and joint"):
+            offset("motor")
         with self.assertRaisesRegex(ayumi.Error, "measured: 3 columns, but robot 'hoap1' has 20"):
             ayumi.identify(robot, sent, (log.dt, np.zeros((5, 3))))
         with self.assertRaisesRegex(ayumi.Error, "one of auto, feet and fixed"):

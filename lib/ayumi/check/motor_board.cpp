@@ -45,7 +45,7 @@ class Watch {
 BoardTargets board_targets(const RobotModel& model, const ReferenceTrajectory& table,
                            const SafetyOptions& options) {
   const Eigen::MatrixXi rounded = encoder_counts(model, table, options);
-  const Eigen::VectorXd zeros = encoder_zeros(model.limits(options.profile));
+  const Eigen::VectorXd zeros = encoder_zeros(model);
   const double ms = table.dt * 1000;
   const bool whole = std::round(ms) >= 1 && std::abs(ms - std::round(ms)) < kWhole;
   const Eigen::Index share = whole ? std::lround(ms) : 1;

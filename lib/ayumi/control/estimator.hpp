@@ -19,7 +19,9 @@ struct FootLoad {
 
 /// One frame of sensor data.
 struct Measurement {
-  Eigen::VectorXd theta, dtheta;  ///< readings of the encoders [rad], [rad/s]
+  /// Angles of the joints and their rates [rad], [rad/s]: readings of the encoders, with the zeros
+  /// that the file of the robot states (model/encoder_angles).
+  Eigen::VectorXd theta, dtheta;
   /// Attitude of the IMU link in the world.
   Eigen::Quaterniond attitude = Eigen::Quaterniond::Identity();
   /// Angular velocity in the axes of the IMU link [rad/s].

@@ -556,6 +556,7 @@ Identification identify(const RobotModel& model, const RecordedMotion& motion,
   const std::vector<std::string> types = motor_types(model);
   Identification result;
   result.seconds = motion.measured.duration();
+  result.measured_at = motion.measured.measured_at;
   std::vector<JointRecording> recordings;
   std::vector<int> dofs;
   for (int j = 0; j < model.dof_count(); ++j) {

@@ -52,6 +52,9 @@ struct IdentifiedJoint {
 struct Identification {
   std::vector<IdentifiedJoint> joints;  ///< the joints that the recording has, in the robot's order
   double seconds = 0;                   ///< length of the recording [s]
+  /// Where the angles were measured. Only angles that were measured at the joints show the zeros of
+  /// the encoders: the servo moves its joint until the encoder reads the target.
+  MeasuredAt measured_at = MeasuredAt::encoder;
   std::string caution;  ///< a note that the recording may be shifted; empty if it is not
 };
 

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "ayumi/model/encoder_angles.hpp"
+
 namespace ayumi {
 
 /// Joint angles at a fixed rate. Row k is at time k dt.
@@ -13,6 +15,8 @@ struct AngleTable {
   Eigen::MatrixXd theta;  ///< joint positions, rows x dof [rad, m]
   std::vector<char> has;  ///< by dof, whether the file has this joint
   bool timed = false;     ///< the file says when each row was measured
+  /// Where the angles were measured. `theta` are angles of joints in both cases.
+  MeasuredAt measured_at = MeasuredAt::encoder;
   /// The step to which the values of each dof are rounded [rad, m]; 0 if they are not rounded.
   Eigen::VectorXd resolution;
 

@@ -53,6 +53,9 @@ ImportedPattern of_keys(ImportedKeys keys, const PatternImport& options) {
 ImportedPattern of_rows(const RobotModel& model, ImportedMotion imported,
                         const PatternImport& options) {
   imported.motion.contact = options.contact;
+  // Bytes that hold angles of joints are nothing that this unit may receive.
+  if (options.reading.measured_at == MeasuredAt::joint && !encoder_zeros(model).isZero(0))
+    imported.sequence.clear();
   add_ramps(options.ramp, model, imported);
   if (options.ground) imported.motion = put_on_ground(model, std::move(imported.motion));
   GroundedMotion motion = grounded(model, imported.motion, "motion.csv");
@@ -66,6 +69,7 @@ ImportedPattern of_rows(const RobotModel& model, ImportedMotion imported,
   result.filled.insert(result.filled.end(), motion.notes.begin(), motion.notes.end());
   result.caution = imported.caution;
   result.sequence = std::move(imported.sequence);
+  if (!result.sequence.empty()) result.pattern.table->encoders = encoders_of(model);
   if (!result.sequence.empty() && result.format == "hoap")
     result.pattern.table->interval_ms = static_cast<int>(std::lround(1000 * imported.motion.dt));
   return result;
@@ -93,10 +97,11 @@ fs::path copy_beside(const fs::path& path, const std::string& format) {
                           : fs::path(path).replace_extension(".sequence.bin");
 }
 
-std::optional<std::string> kept_file(const DenseTable& table, const std::string& format) {
+std::optional<std::string> kept_file(const DenseTable& table, const std::string& format,
+                                     const RobotModel& model) {
   // The ending of the copy's name says which format it has.
   if (!table.sequence || !table.sequence->file.ends_with(copy_beside("", format).string()) ||
-      theta_sha256(table) != table.sequence->theta_sha256)
+      theta_sha256(table) != table.sequence->theta_sha256 || !read_with_encoders_of(model, table))
     return {};
   return kept_sequence(table);
 }

@@ -40,9 +40,10 @@ ImportedPattern import_pattern(const std::string& bytes, const std::string& file
                                const RobotModel& model, const PatternImport& options = {});
 
 /// The bytes of the file of `format` from which the table was imported, if the table still has the
-/// angles of this import. Returns nothing for another format. Throws the same errors as
-/// kept_sequence().
-std::optional<std::string> kept_file(const DenseTable& table, const std::string& format);
+/// angles of this import and was read with the encoders of `model`. Returns nothing for another
+/// format. Throws the same errors as kept_sequence().
+std::optional<std::string> kept_file(const DenseTable& table, const std::string& format,
+                                     const RobotModel& model);
 
 /// The place where write_imported() keeps the copy of a file of this format.
 std::filesystem::path copy_beside(const std::filesystem::path& path, const std::string& format);

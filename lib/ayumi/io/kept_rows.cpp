@@ -36,7 +36,8 @@ std::optional<KeptRows> kept_rows(const Task& task) {
   const DenseTable& table = *task.pattern.table;
   // A copy in another format (io/import_pattern.hpp) has no rows of targets.
   if (!table.sequence || !table.sequence->file.ends_with(sequence_beside("").string()) ||
-      theta_sha256(table) != table.sequence->theta_sha256 || !moves_as_table(task))
+      theta_sha256(table) != table.sequence->theta_sha256 ||
+      !read_with_encoders_of(task.robot, table) || !moves_as_table(task))
     return {};
   std::string bytes = kept_sequence(table);
   HoapFile file =

@@ -18,8 +18,8 @@ struct KeptRows {
 };
 
 /// The rows of the sequence from which the pattern was imported. Returns nothing if there was no
-/// sequence or if the motion was changed. Throws Error(bad_file) if the kept sequence is missing or
-/// was changed.
+/// sequence, if the motion was changed, or if the encoders of the robot are not those with which
+/// the sequence was read. Throws Error(bad_file) if the kept sequence is missing or was changed.
 std::optional<KeptRows> kept_rows(const Task& task);
 
 /// The unchanged rows of the pattern's table, if the pattern still moves as its table does. Values

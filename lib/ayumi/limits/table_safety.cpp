@@ -153,7 +153,7 @@ class JointJudge {
         share_(options.step_share),
         step_(scale_ > 0 ? count_step_limits(model, dt, options)[dof]
                          : largest_steps(model, dt, options)[dof]),
-        rounder_(model, dof_, encoder_zeros(model.limits(options.profile))[dof], step_) {}
+        rounder_(model, dof_, encoder_zeros(model)[dof], step_) {}
 
   void next(double theta, double t) {
     position(theta, t);
@@ -428,7 +428,7 @@ Eigen::VectorXd largest_steps(const RobotModel& model, double dt, const SafetyOp
 Eigen::MatrixXi encoder_counts(const RobotModel& model, const ReferenceTrajectory& table,
                                const SafetyOptions& options) {
   const Eigen::VectorXd step_limits = count_step_limits(model, table.dt, options),
-                        zeros = encoder_zeros(model.limits(options.profile));
+                        zeros = encoder_zeros(model);
   const std::vector<Eigen::Index> columns = columns_of(model, table.joints, table.rows.size());
   Eigen::MatrixXi counts =
       Eigen::MatrixXi::Zero(static_cast<Eigen::Index>(table.rows.size()), model.dof_count());

@@ -1,14 +1,22 @@
 #include "ayumi/model/encoder_angles.hpp"
 
+#include "ayumi/base/error.hpp"
+
 namespace ayumi {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-VectorXd encoder_zeros(const ActuatorLimits& actuators) {
-  VectorXd zeros(static_cast<Eigen::Index>(actuators.servo.size()));
-  for (Eigen::Index j = 0; j < zeros.size(); ++j)
-    zeros[j] = actuators.servo[static_cast<size_t>(j)].offset;
+MeasuredAt measured_at(const std::string& name) {
+  if (name == "encoder") return MeasuredAt::encoder;
+  if (name == "joint") return MeasuredAt::joint;
+  fail(ErrorCode::usage, "measured_at '" + name + "' is not one of encoder and joint");
+}
+
+VectorXd encoder_zeros(const RobotModel& model) {
+  const std::vector<ServoDescription>& servos = model.limits().servo;
+  VectorXd zeros(static_cast<Eigen::Index>(servos.size()));
+  for (Eigen::Index j = 0; j < zeros.size(); ++j) zeros[j] = servos[static_cast<size_t>(j)].offset;
   return zeros;
 }
 

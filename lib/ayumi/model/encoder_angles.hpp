@@ -4,14 +4,22 @@
 // passes this border, and so do the targets and the readings of a simulated robot.
 
 #include <Eigen/Core>
+#include <string>
 
 #include "ayumi/model/robot_model.hpp"
 
 namespace ayumi {
 
+/// The side of the border on which angles were measured: readings of the encoders of this unit, or
+/// angles from instruments at the joints, which do not share the zeros of the encoders.
+enum class MeasuredAt { encoder, joint };
+
+/// "encoder" or "joint"; throws Error(usage) for another name.
+MeasuredAt measured_at(const std::string& name);
+
 /// The zeros of the encoders of this unit: the angle at which each joint stands while its encoder
-/// reads 0 [rad, m], by dof.
-Eigen::VectorXd encoder_zeros(const ActuatorLimits& actuators);
+/// reads 0 [rad, m], by dof. They belong to the unit, so they are the same in all its profiles.
+Eigen::VectorXd encoder_zeros(const RobotModel& model);
 
 /// The angles that the encoders read while the joints have these angles, and the reverse. If there
 /// are no zeros, or all are 0, both are the same, to the bit.

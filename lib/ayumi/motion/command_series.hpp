@@ -50,9 +50,9 @@ struct CommandSeries {
   /// Whether the joints come from a table of servo targets, from which the lead was removed; the
   /// table is replayed unchanged.
   bool servo_commands = false;
-  /// Servo targets for open loop instead of the command with its feedforward, dof x samples [rad];
-  /// the last column is held after the end. If the matrix is empty, the command with its
-  /// feedforward is used.
+  /// Servo targets for open loop instead of the command with its feedforward, as angles of the
+  /// joints, dof x samples [rad]; the last column is held after the end. If the matrix is empty,
+  /// the command with its feedforward is used.
   Eigen::MatrixXd targets = {};
   /// The rows of an imported sequence, which a robot receives unchanged. Without them, the table is
   /// computed from the samples.

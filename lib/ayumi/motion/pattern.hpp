@@ -129,6 +129,8 @@ struct DenseTable {
   std::vector<double> fz;                     ///< vertical force [N]; empty or one per row
   std::optional<KeptSequence> sequence = {};  ///< source of an imported table
   int interval_ms = 0;  ///< time between rows of the imported file [ms]; 0 if none was imported
+  /// Identity of the encoders with which the file was read (encoders_of()); "" if no file is kept.
+  std::string encoders = {};
 };
 
 /// A time in which the sampled motion is replaced by smooth curves (motion/smooth_motion.hpp).

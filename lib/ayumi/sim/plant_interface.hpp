@@ -24,8 +24,10 @@ class PlantInterface {
   /// Puts the robot in this state and removes all contacts. Throws Error(usage) for a value that is
   /// not a number.
   void set_state(const RobotState& state) { calls_->set_state(plant_, state); }
-  /// Advances by `dt` [s] with constant servo targets [rad, m]. The report is valid until the next
-  /// step. Throws Error(usage) with place and time for input that is not finite or not below 1e6.
+  /// Advances by `dt` [s] with constant servo targets [rad, m]. The targets are angles of the
+  /// encoders (model/encoder_angles); the angles of state() are those of the joints. The report is
+  /// valid until the next step. Throws Error(usage) with place and time for input that is not
+  /// finite or not below 1e6.
   const StepReport& step(const Eigen::VectorXd& targets, const StepInput& input, double dt) {
     return calls_->step(plant_, targets, input, dt);
   }

@@ -25,7 +25,9 @@ struct PlantKind {
 
 /// Servo targets that replace those of the control law in each tick. The arguments are the targets
 /// that the law would send at `t` [s], the estimate that it had, and its plan. The result must have
-/// the size of `targets` [rad, m]. Copies of a simulator share the state of the function.
+/// the size of `targets` [rad, m]. All angles are those of the joints; the simulator makes targets
+/// of encoders of them (model/encoder_angles). Copies of a simulator share the state of the
+/// function.
 using TargetFunction = std::function<Eigen::VectorXd(
     double t, const Estimate& estimate, const CommandSample& plan, const Eigen::VectorXd& targets)>;
 

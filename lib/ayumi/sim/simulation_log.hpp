@@ -19,7 +19,7 @@ namespace ayumi {
 
 struct SimulationSample {
   RobotState state;                 ///< true state of the plant
-  Eigen::VectorXd target;           ///< servo targets [rad, m]
+  Eigen::VectorXd target;           ///< servo targets as angles of the joints [rad, m]
   Eigen::VectorXd torque;           ///< torque that the servos applied [N m]
   BasePose reference_base;          ///< base of the reference posture
   Eigen::VectorXd reference_theta;  ///< reference posture, without the servo lead [rad, m]

@@ -84,8 +84,7 @@ Simulator::Simulator(const RobotModel& model, const CommandSeries& series,
     counts_[j] =
         std::abs(model_->dofs()[static_cast<size_t>(j)].encoder.counts_per_degree) * 180 / M_PI;
   // The law knows the zeros of the robot's file. An uncertain robot may have others.
-  if (const VectorXd known = encoder_zeros(model.limits(options.profile)); !known.isZero(0))
-    zeros_ = known;
+  if (const VectorXd known = encoder_zeros(model); !known.isZero(0)) zeros_ = known;
   model.sole(Side::left);  // throws if the robot has no soles
   set_scenario(options.scenario);
   if (options.targets)

@@ -60,7 +60,7 @@ TableServo table_servo(const RobotModel& model, const std::string& profile, Serv
           list_of(limits, [](const ServoDescription& servo) { return servo.delay; }),
           list_of(limits,
                   [](const ServoDescription& servo) { return servo.kp > 0 ? servo.lag() : 0.0; }),
-          encoder_zeros(limits)};
+          encoder_zeros(model)};
 }
 
 ReferenceTrajectory table_of_series(const RobotModel& model, const std::string& profile,

@@ -356,7 +356,8 @@ double angle_of_unit(const HoapFile& sequence, const Dof& dof) {
 Eigen::MatrixXd hoap_readings(const RobotModel& model, const HoapFile& sequence) {
   const Eigen::Index count =
       (sequence.rows.back().at - sequence.rows.front().at) / sequence.tick_ms + 1;
-  Eigen::MatrixXd readings = model.posture().transpose().replicate(count, 1);
+  Eigen::MatrixXd readings =
+      encoder_angles(model.posture(), encoder_zeros(model)).transpose().replicate(count, 1);
   for (int j = 0; j < model.dof_count(); ++j) {
     const Dof& dof = model.dofs()[static_cast<size_t>(j)];
     if (dof.encoder.device < 1 || dof.encoder.device > sequence.layout.motors) continue;
@@ -365,13 +366,12 @@ Eigen::MatrixXd hoap_readings(const RobotModel& model, const HoapFile& sequence)
   return readings;
 }
 
-ReferenceTrajectory hoap_targets(const RobotModel& model, const HoapFile& sequence,
-                                 const std::string& profile) {
+ReferenceTrajectory hoap_targets(const RobotModel& model, const HoapFile& sequence) {
   ReferenceTrajectory table;
   table.dt = sequence.dt();
   table.joints = model.dof_names();
   table.provenance.robot = model.name();
-  table.servo.zeros = encoder_zeros(model.limits(profile));
+  table.servo.zeros = encoder_zeros(model);
   const Eigen::MatrixXd theta = joint_rows(hoap_readings(model, sequence), table.servo.zeros);
   table.rows.resize(static_cast<size_t>(theta.rows()));
   for (Eigen::Index k = 0; k < theta.rows(); ++k)

@@ -66,14 +66,14 @@ Eigen::VectorXd values_on_ticks(const HoapFile& sequence, int device);
 /// Angle of a joint per unit of the file's values. Radians have the sign of the encoder.
 double angle_of_unit(const HoapFile& sequence, const Dof& dof);
 
-/// The encoder angles of a sequence at its ticks, ticks x dof in the robot's joint order. Joints
-/// without a device in the file have their home angle.
+/// The readings of the encoders (model/encoder_angles) at the ticks of a sequence, ticks x dof in
+/// the robot's joint order. The encoders of joints without a device in the file read their home
+/// angle.
 Eigen::MatrixXd hoap_readings(const RobotModel& model, const HoapFile& sequence);
 
-/// The servo targets of a sequence at its ticks, as joint angles of the unit that the profile
-/// describes (model/encoder_angles), in the robot's joint order; the other fields are zero.
-ReferenceTrajectory hoap_targets(const RobotModel& model, const HoapFile& sequence,
-                                 const std::string& profile = "");
+/// The servo targets of a sequence at its ticks, as angles of the joints of this robot unit, in the
+/// robot's joint order; the other fields are zero.
+ReferenceTrajectory hoap_targets(const RobotModel& model, const HoapFile& sequence);
 
 /// The table as a sequence file, in the layout of written_layout() unless another one is given. The
 /// counts are those of encoder_counts under the step limits of the options. Throws

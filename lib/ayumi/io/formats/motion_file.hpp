@@ -33,6 +33,9 @@ struct MotionFile {
   std::vector<Support> support;           ///< empty or one for each row
   bool keys = false;      ///< rows are key postures, between which a player interpolates
   bool commands = false;  ///< values are what servos receive
+  /// Values are angles of joints, because the file states the zeros of its encoders (or none), and
+  /// the reader has added them.
+  bool of_joints = false;
   /// Origin of the unit of the angles: the format defines it, or the reader has converted each
   /// column by its own unit, or the user states it.
   enum class Unit { of_format, of_columns, assumed } unit = Unit::of_format;

@@ -346,9 +346,9 @@ std::vector<int> map_joints(const MotionFile& motion, const RobotModel& model,
 // ---- rows
 
 // The columns: theta of the robot, and then the other quantities of the motion. NaN means that a
-// value is not set.
+// value is not set. `zeros` are added to the columns of the file, by dof.
 Rows rows_of(const MotionFile& motion, const std::vector<int>& columns, const RobotModel& model,
-             bool degrees) {
+             bool degrees, const Eigen::VectorXd& zeros) {
   const Eigen::Index rows = motion.rows(), dofs = model.dof_count();
   Rows all(rows, dofs + (motion.base.empty() ? 0 : 7) + (motion.cog.empty() ? 0 : 3) +
                      (motion.zmp.empty() ? 0 : 3) + (motion.fz.empty() ? 0 : 1));
@@ -361,6 +361,7 @@ Rows rows_of(const MotionFile& motion, const std::vector<int>& columns, const Ro
       all.col(dof) = motion.values.col(column);
     if (degrees && column >= 0 && !model.dofs()[static_cast<size_t>(dof)].prismatic)
       all.col(dof) *= kRadiansPerDegree;
+    if (column >= 0 && zeros[dof] != 0) all.col(dof).array() += zeros[dof];
   }
   for (Eigen::Index k = 0; k < rows; ++k) {
     const auto at = static_cast<size_t>(k);
@@ -584,13 +585,15 @@ void take_out_lead(const RobotModel& model, ImportedMotion& imported) {
       "angles are servo targets: the velocity lead, delay + kd/kp, was subtracted");
 }
 
-// Whether the values are angles of the encoders of this robot unit: programs of a robot play and
-// record such angles, and so they are the targets of servos. The reader of a table of this program
-// has already taken the zeros of its head into account.
+// Whether the values are angles of the encoders of this robot unit. If nobody says so, they are if
+// the format is one that programs of a robot play or record, or if they are the targets of servos.
+// The reader of a table of this program has already taken the zeros of its head into account.
 bool of_encoders(const MotionFile& read, const ImportOptions& options, const std::string& format) {
   if (options.sent) return true;
+  if (read.of_joints) return false;
+  if (options.measured_at) return *options.measured_at == MeasuredAt::encoder;
   const MotionFormat* const known = find_motion_format(format);
-  return !read.commands && (options.commands || format == "hoap" || (known && known->played));
+  return options.commands || format == "hoap" || (known && known->played);
 }
 
 // The robot keeps the last target of a sequence, so a short one can be made longer.
@@ -765,11 +768,11 @@ void read_rows(const std::string& bytes, const std::string& file, const RobotMod
   result.filled.insert(result.filled.end(), read.notes.begin(), read.notes.end());
   const bool assumed = read.unit == MotionFile::Unit::assumed;
   const auto unit_note = static_cast<std::ptrdiff_t>(result.filled.size());
-  const Rows rows = rows_of(read, columns, model, options.degrees && assumed);
+  Eigen::VectorXd zeros = Eigen::VectorXd::Zero(model.dof_count());
+  if (of_encoders(read, options, result.format)) zeros = encoder_zeros(model);
+  const Rows rows = rows_of(read, columns, model, options.degrees && assumed, zeros);
   set_motion(even_rows(read, rows, options, file, result.format, result.motion.dt, result.filled),
              read, model.dof_count(), result.motion);
-  if (of_encoders(read, options, result.format))
-    result.motion.theta = joint_rows(std::move(result.motion.theta), encoder_zeros(model.limits()));
   if (const std::string unit = assumed_unit(read, model, options.degrees, result.motion);
       !unit.empty())
     result.filled.insert(result.filled.begin() + unit_note, unit);

@@ -78,7 +78,7 @@ double share_at(double t) {
 }  // namespace
 
 Eigen::VectorXd sign_test_start(const RobotModel& model) {
-  Eigen::VectorXd start = encoder_zeros(model.limits());  // here, the encoders read 0
+  Eigen::VectorXd start = encoder_zeros(model);  // here, the encoders read 0
   for (int j = 0; j < model.dof_count(); ++j) {
     const Dof& dof = model.dofs()[static_cast<size_t>(j)];
     if (!dof.limited) continue;

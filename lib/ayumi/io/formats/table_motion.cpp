@@ -140,6 +140,8 @@ MotionFile read_number_motion(const MotionInput& source, NumberTable table) {
   require_known_version(table, file);
   MotionFile motion;
   motion.commands = holds_commands(table);
+  const auto format = table.header.find("format");
+  motion.of_joints = format != table.header.end() && format->second.starts_with("ayumi.");
   motion.caution = caution_of(table);
   name_root_columns(
       table, file, [&](const std::string& column) { return find_joint(source.model, column) >= 0; },

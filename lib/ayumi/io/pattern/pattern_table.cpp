@@ -2,10 +2,12 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
+#include "ayumi/base/text.hpp"
 #include "ayumi/io/json/json_reader.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/io/run/sha256.hpp"
 #include "ayumi/io/table/table.hpp"
+#include "ayumi/model/encoder_angles.hpp"
 
 namespace ayumi {
 
@@ -84,6 +86,22 @@ std::string kept_sequence(const DenseTable& table) {
                                   ": this is no longer the sequence that was imported; import the "
                                   "changed sequence again");
   return bytes;
+}
+
+std::string encoders_of(const RobotModel& model) {
+  const Eigen::VectorXd zeros = encoder_zeros(model);
+  std::string text;
+  for (int j = 0; j < model.dof_count(); ++j) {
+    const Dof& dof = model.dofs()[static_cast<size_t>(j)];
+    text += dof.name + " " + std::to_string(dof.encoder.device) + " " +
+            text::exact(dof.encoder.counts_per_degree) + " " + text::exact(zeros[j]) + "\n";
+  }
+  return sha256(text);
+}
+
+bool read_with_encoders_of(const RobotModel& model, const DenseTable& table) {
+  return table.encoders.empty() ? encoder_zeros(model).isZero(0)
+                                : table.encoders == encoders_of(model);
 }
 
 TableCaution caution_of(const Pattern& pattern) {

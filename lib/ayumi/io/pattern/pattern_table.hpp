@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "ayumi/model/robot_model.hpp"
 #include "ayumi/motion/pattern.hpp"
 #include "ayumi/motion/table_caution.hpp"
 
@@ -35,6 +36,15 @@ void write_pattern_and_table(const std::filesystem::path& path, const Pattern& p
 /// The bytes of the sequence from which the pattern's table was imported. Throws Error(bad_file) if
 /// the file is missing or is not the imported one.
 std::string kept_sequence(const DenseTable& table);
+
+/// Checksum of what determines the angles that this unit's encoders report: device, counts and zero
+/// of each.
+std::string encoders_of(const RobotModel& model);
+
+/// Whether the sequence of the table was read with the encoders of this robot unit. Then the robot
+/// makes the motion of the table when it receives the bytes of the sequence. Tables of versions
+/// that did not know the zeros of encoders were read with zeros of 0.
+bool read_with_encoders_of(const RobotModel& model, const DenseTable& table);
 
 /// The caution in the head of the pattern's table about the run from which the table comes; nothing
 /// for a pattern without a table.

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "ayumi/base/text.hpp"
 
@@ -22,14 +23,10 @@ constexpr double kWritableOffset = 0.5;
 // The servo of a joint as the simulation gets it; its constants are those of `source`. If the
 // stiffness is not determined, the lower end of its interval is written; if there is no such end,
 // the robot keeps its own stiffness. If the recording shows no damping, the whole lag is written as
-// damping and not as delay, because a servo without any damping would let the joint oscillate. The
-// offset is the joint's own: the difference between its angle and its command without load is added
-// to the one that was known, so that the next table compensates for both.
+// damping and not as delay, because a servo without any damping would let the joint oscillate.
 OrderedJson servo_group(const IdentifiedJoint& joint, const IdentifiedJoint& source,
                         const ServoDescription& own) {
   OrderedJson group = {{"joints", {joint.joint}}};
-  const double offset = own.offset + joint.offset.value;
-  if (std::abs(offset) <= kWritableOffset) group["offset"] = sidecar_number(offset);
   if (!source.moved) return group;
   const bool has_kp = source.kp.known || source.kp.lower > 0;
   const double kp = source.kp.known ? source.kp.value : has_kp ? source.kp.lower : own.kp;
@@ -51,18 +48,23 @@ OrderedJson servo_group(const IdentifiedJoint& joint, const IdentifiedJoint& sou
   return group;
 }
 
-// Whether the profile of `model` states servos of its own, which override those of the robot.
-bool profile_has_servos(const RobotModel& model) {
-  for (const ActuatorProfile& profile : model.description().profiles)
-    if (profile.name == model.limits().name) return !profile.servos.empty();
-  return false;
+// The zero of the joint's encoder. Angles that were measured at the joint show it: the difference
+// between the angle and its command without load is added to the offset that was known, so that the
+// next table compensates for both. Readings of the encoder itself do not contain its zero, and a
+// constant difference from the command is an error of the servo. Nothing for these readings, and
+// for an offset that is larger than a sidecar may state.
+std::optional<double> new_offset(const IdentifiedJoint& joint, const ServoDescription& own,
+                                 MeasuredAt measured_at) {
+  const double offset = sidecar_number(own.offset + joint.offset.value);
+  if (measured_at == MeasuredAt::encoder || std::abs(offset) > kWritableOffset) return {};
+  return offset;
 }
 
 }  // namespace
 
 std::string identified_sidecar(const RobotModel& model, const Identification& found,
                                const IdentifiedNames& names) {
-  OrderedJson groups = OrderedJson::array();
+  OrderedJson groups = OrderedJson::array(), offsets = OrderedJson::array();
   std::map<std::string, const IdentifiedJoint*> of_type;
   for (const IdentifiedJoint& joint : found.joints) {
     const IdentifiedJoint*& best = of_type[joint.type];
@@ -75,7 +77,16 @@ std::string identified_sidecar(const RobotModel& model, const Identification& fo
   for (const IdentifiedJoint& joint : found.joints) {
     const IdentifiedJoint& source = joint.moved && joint.kp.known ? joint : *of_type.at(joint.type);
     const auto dof = static_cast<size_t>(model.find_dof(joint.joint));
-    groups.push_back(servo_group(joint, source, model.limits().servo[dof]));
+    const ServoDescription& own = model.limits().servo[dof];
+    OrderedJson group = servo_group(joint, source, own);
+    // A sidecar can only state the offset of a joint whose servo is stated.
+    const bool has_servo = group.contains("kp") ||
+                           (model.limits().has_servo[dof] && !model.description().servos_inferred);
+    if (const auto offset = new_offset(joint, own, found.measured_at); offset && has_servo) {
+      group["offset"] = *offset;
+      offsets.push_back({{"joints", {joint.joint}}, {"offset", *offset}});
+    }
+    if (group.size() > 1) groups.push_back(group);
   }
   OrderedJson json = {
       {"format", "ayumi.robot/1"},
@@ -84,10 +95,13 @@ std::string identified_sidecar(const RobotModel& model, const Identification& fo
       {"servos", groups},
       {"assumptions",
        {"servos: identified from " + names.measured + " with the command " + names.command}}};
-  // Servos of a profile override those of the robot, so the constants that were found are written
-  // there too.
-  if (profile_has_servos(model))
-    json["profiles"] = {{{"name", model.limits().name}, {"servos", groups}}};
+  // Servos of a profile override those of the robot. So the constants are written there too, for
+  // the profile of the recording, and the offsets, which belong to the unit, for all profiles.
+  for (const ActuatorProfile& profile : model.description().profiles) {
+    const OrderedJson& own = profile.name == model.limits().name ? groups : offsets;
+    if (!profile.servos.empty() && !own.empty())
+      json["profiles"].push_back({{"name", profile.name}, {"servos", own}});
+  }
   return json.dump(2) + "\n";
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <optional>
 
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
@@ -128,6 +129,10 @@ std::map<std::string, ServoDescription> read_servos(
   files += groups.files;
   std::map<std::string, ServoDescription> servos;
   for (const auto& [joint, stated] : groups.stated) servos[joint] = groups.servos[joint];
+  for (const auto& [joint, servo] : groups.servos)
+    if (servo.offset != 0 && !groups.stated.contains(joint))
+      node.complain("these groups state an offset of " + joint +
+                    ", but no servo of this joint; state its kp, too");
   return servos;
 }
 
@@ -461,6 +466,35 @@ void check_counts(const JsonNode& root, const RobotDescription& robot) {
   for (const ActuatorProfile& profile : robot.profiles) check("profiles", profile.servos);
 }
 
+// An offset belongs to the encoder of this robot unit and not to the actuators that a profile
+// assumes, so it has to be the same in all profiles.
+void check_offsets(const JsonNode& root, const RobotDescription& robot) {
+  const auto degrees = [](double offset) {
+    return text::brief(offset / kRadiansPerDegree, 4) + " deg";
+  };
+  for (const std::string& joint : moving_joints(robot)) {
+    const auto common = robot.servos.find(joint);
+    std::optional<double> known;
+    std::string where = "'servos'";
+    if (common != robot.servos.end()) known = common->second.offset;
+    for (const ActuatorProfile& profile : robot.profiles) {
+      const auto own = profile.servos.find(joint);
+      const double offset = own != profile.servos.end()    ? own->second.offset
+                            : common != robot.servos.end() ? common->second.offset
+                                                           : 0;
+      if (known && *known != offset)
+        root.at("profiles")
+            .complain("the encoder of " + joint + " has an offset of " + degrees(offset) +
+                      " in the profile '" + profile.name + "', but of " + degrees(*known) + " in " +
+                      where +
+                      "; an offset belongs to the robot unit, so state it once, in "
+                      "'servos'");
+      if (!known) where = "the profile '" + profile.name + "'";
+      known = offset;
+    }
+  }
+}
+
 void read_root(const JsonNode& root, RobotDescription& robot, std::string& files) {
   const std::vector<std::pair<const char*, std::function<void(const JsonNode&)>>> readers = {
       {"facing", [&](const JsonNode& node) { turn_to_face_x(robot, node.one_of(facing_names())); }},
@@ -489,6 +523,7 @@ void read_root(const JsonNode& root, RobotDescription& robot, std::string& files
     if (const auto node = root.find(key)) read(*node);
   read_lists(root, robot);
   check_counts(root, robot);
+  check_offsets(root, robot);
 }
 
 std::filesystem::path find_urdf(const JsonNode& node,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ayumi/author/import/contact_reconstruction.hpp"
+#include "ayumi/model/encoder_angles.hpp"
 #include "ayumi/motion/table_caution.hpp"
 
 namespace ayumi {
@@ -16,6 +17,11 @@ struct ImportOptions {
   bool degrees = false;   ///< unit of angles if the format does not define it
   double rate = 0;        ///< rate of rows without times [1/s]
   bool commands = false;  ///< angles are servo targets, as in Ayumi's reference tables
+  /// Where the angles were measured. If nobody says so, the format decides: those that a robot
+  /// plays or records, HOAP sequences among them, and servo targets (`commands`) are angles of the
+  /// encoders, and all others are angles of the joints. The head of a table of this program states
+  /// its offsets itself.
+  std::optional<MeasuredAt> measured_at{};
   /// The values are sent to this robot as they are, so they are angles of its own encoders,
   /// whatever robot the head of a table was made for.
   bool sent = false;

@@ -529,11 +529,19 @@ AngleTable readings_of(const std::string& bytes, const std::string& file, const 
 
 }  // namespace
 
+void take_to_joints(const RobotModel& model, MeasuredAt measured_at, AngleTable& table) {
+  table.measured_at = measured_at;
+  if (measured_at == MeasuredAt::joint) return;
+  const Eigen::VectorXd zeros = encoder_zeros(model);
+  for (int dof = 0; dof < model.dof_count(); ++dof)
+    if (table.has[static_cast<size_t>(dof)] && zeros[dof] != 0)
+      table.theta.col(dof).array() += zeros[dof];
+}
+
 AngleTable read_angles(const std::string& bytes, const std::string& file, const RobotModel& model,
                        const RecordingOptions& options) {
   AngleTable table = readings_of(bytes, file, model, options);
-  if (!options.at_joints)
-    table.theta = joint_rows(std::move(table.theta), encoder_zeros(model.limits()));
+  take_to_joints(model, options.measured_at, table);
   return table;
 }
 

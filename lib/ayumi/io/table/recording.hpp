@@ -5,6 +5,7 @@
 #include <string>
 
 #include "ayumi/identify/recorded_motion.hpp"
+#include "ayumi/model/encoder_angles.hpp"
 #include "ayumi/model/robot_model.hpp"
 
 namespace ayumi {
@@ -12,9 +13,7 @@ namespace ayumi {
 struct RecordingOptions {
   bool degrees = false;  ///< the unit of joint columns whose names have none
   double rate = 0;       ///< rows per second if the file has no times [1/s]; 0 for 1000
-  /// The angles were measured at the joints, by instruments that do not share the zeros of the
-  /// encoders. Otherwise they are readings of the encoders (model/encoder_angles).
-  bool at_joints = false;
+  MeasuredAt measured_at = MeasuredAt::encoder;
 };
 
 /// Reads the angles of the joints of this robot unit from a HOAP sequence (interval, 2, counts,
@@ -27,6 +26,10 @@ struct RecordingOptions {
 /// are zero.
 AngleTable read_angles(const std::string& bytes, const std::string& file, const RobotModel& model,
                        const RecordingOptions& options = {});
+
+/// Makes angles that were measured at the encoders or at the joints into angles of joints, as
+/// read_angles() does. Columns that the table does not have are left as they are.
+void take_to_joints(const RobotModel& model, MeasuredAt measured_at, AngleTable& table);
 
 /// Whether the first row of a file is numbers, as HOAP files are.
 bool is_bare_table(const std::string& bytes);

@@ -189,6 +189,7 @@ void read_import(const std::map<std::string, std::string>& header,
   const std::filesystem::path named = std::filesystem::absolute(table).parent_path() / file;
   dense.sequence = {std::filesystem::weakly_canonical(named), line("sequence_sha256"),
                     line("theta_sha256")};
+  dense.encoders = line("encoders_sha256");
 }
 
 }  // namespace
@@ -352,6 +353,7 @@ std::string dense_table_csv(const DenseTable& table, const TableCaution& caution
     header.emplace_back("sequence", kept->file);
     header.emplace_back("sequence_sha256", kept->sha256);
     header.emplace_back("theta_sha256", kept->theta_sha256);
+    if (!table.encoders.empty()) header.emplace_back("encoders_sha256", table.encoders);
   }
   for (const auto& line : caution_lines(caution)) header.push_back(line);
   std::string text = csv_header(header) + text::join(columns, ",") + "\n";
