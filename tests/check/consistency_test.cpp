@@ -359,7 +359,7 @@ TEST(Consistency, TolerancesAreCheckedByName) {
   EXPECT_EQ(
       find(check_consistency(limited_biped(), good_walk(), options), "support_margin").severity,
       Severity::warning);
-  EXPECT_EQ(finding_specs().size(), 26u);
+  EXPECT_EQ(finding_specs().size(), 27u);
 }
 
 TEST(Consistency, SameReportTwice) {
