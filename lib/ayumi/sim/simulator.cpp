@@ -233,7 +233,8 @@ const ControlOutput& Simulator::in_counts(const ControlOutput& out) {
   for (Eigen::Index j = 0; j < counts_.size(); ++j)
     if (counts_[j] > 0) {
       const double zero = zeros_.size() > 0 ? zeros_[j] : 0;
-      changed_.target[j] = std::round((changed_.target[j] - zero) * counts_[j]) / counts_[j] + zero;
+      changed_.target[j] = std::round((changed_.target[j] - zero) * counts_[j]) / counts_[j];
+      if (zero != 0) changed_.target[j] += zero;  // adding 0 would change the sign of -0
     }
   return changed_;
 }
