@@ -822,7 +822,7 @@ TEST(PlantedMistakes, AllKeysOfASwingAreNamedTogether) {
                                     {2.4, Foothold{{0.03, -0.125, 0.03}, {-32 * kDegree, 0, 0}}}});
   for (Keyframe& key : kick.keyframes) key.cog_height = 0.235;
   const std::string found = texts_of(likely_mistakes(small(), kick, options_of(kick)));
-  EXPECT_NE(found.find("nearer and lower"), std::string::npos) << found;
+  EXPECT_NE(found.find("with all keys of this swing nearer"), std::string::npos) << found;
   const std::regex place("\\[(-?[0-9.]+), (-?[0-9.]+), (-?[0-9.]+)\\] in /keyframes/([34])");
   int places = 0;
   for (std::sregex_iterator it(found.begin(), found.end(), place), end; it != end; ++it, ++places)
