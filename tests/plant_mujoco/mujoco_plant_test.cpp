@@ -38,35 +38,6 @@ TEST(MujocoPlant, StandingCarriesTheWeight) {
   EXPECT_FALSE(report.body_contact);
 }
 
-// A standing robot sinks into soft soles by its weight over their stiffness, and as fast as in
-// Ayumi's plant: with a damping time of 0.1 s, it has sunk by 1 - 1/e after 0.1 s.
-TEST(MujocoPlant, SolesAreAsSoftAsTheSidecarStates) {
-  constexpr double kStiffness = 20000, kTime = 0.1;
-  RobotDescription description = hoap1().description();
-  for (auto& [side, sole] : description.soles) {
-    sole.stiffness = kStiffness;
-    sole.damping_time = kTime;
-  }
-  const RobotModel robot(description);
-  const CommandSample s = test::standing(robot, 0).samples[0];
-  MujocoPlant theirs(robot, robot.limits(), World{});
-  Plant ours(robot, robot.limits(), World{});
-  theirs.set_state(s.state);
-  ours.set_state(s.state);
-  const double sink = robot.mass() * kGravity / (2 * kStiffness);
-  for (int i = 1; i <= 1500; ++i) {
-    theirs.step(s.state.theta, {}, 1e-3);
-    ours.step(s.state.theta, {}, 1e-3);
-    if (i == 100) {
-      EXPECT_NEAR(s.cog.z() - theirs.data().cog.z(), (1 - std::exp(-1)) * sink, 0.1 * sink);
-    }
-    if (i % 100 == 0) {
-      EXPECT_NEAR(theirs.data().cog.z(), ours.data().cog.z(), 0.02 * sink) << i;
-    }
-  }
-  EXPECT_NEAR(s.cog.z() - theirs.data().cog.z(), sink, 0.1 * sink);
-}
-
 struct FlightDifference {
   double ours = 0, theirs = 0;  ///< deviation of the COG from its parabola [m]
   double attitude = 0;          ///< difference of the attitudes of the two bases [rad]

@@ -40,33 +40,6 @@ void MujocoPlant::Impl::set_friction() {
   }
 }
 
-// The force of a contact with the stiffness k and the damping time T at the end of a step of h is
-//   -k (gap + h v) - k T v,  with v = v0 + h a,  so  -(a + v0/h + gap/(h (h + T))) / R
-// with R = 1/(h k (h + T)), as in the plant of Ayumi. MuJoCo computes -(a + B v0 + K I gap) / R
-// with R = (1 - I)/I A, where I is the impedance of the contact and A the inverse of the inertia of
-// its body. Of the numbers of solref, K is the first one divided by I^2, and B the second one
-// divided by I.
-void MujocoPlant::Impl::set_softness(double h) {
-  if (h == softened_for) return;
-  softened_for = h;
-  for (int g = 0; g < m->ngeom; ++g) {
-    const int number = point_of[static_cast<size_t>(g)];
-    if (number == -1) continue;
-    const auto of_side = [&](const ContactPoint& point) { return point.side == -2 - number; };
-    const ContactPoint& point = number >= 0 ? points[static_cast<size_t>(number)]
-                                            : *std::find_if(points.begin(), points.end(), of_side);
-    const double time = h + point.damping_time;
-    const double share = h * point.stiffness * time * m->body_invweight0[2 * m->geom_bodyid[g]];
-    const double impedance = std::clamp(share / (1 + share), mjMINIMP, mjMAXIMP);
-    mjtNum* const solref = m->geom_solref + mjNREF * g;
-    mjtNum* const solimp = m->geom_solimp + mjNIMP * g;
-    solref[0] = -impedance / (h * time);
-    solref[1] = -impedance / h;
-    solimp[0] = solimp[1] = impedance;
-    m->geom_priority[g] = 1;  // the ground is rigid
-  }
-}
-
 // MuJoCo gives no velocity to a body that its user moves. The motion of the ground is therefore
 // added to the reference acceleration of each contact row: a = -b (v - v_ground) + a_ground.
 void MujocoPlant::Impl::move_ground(double dt) {

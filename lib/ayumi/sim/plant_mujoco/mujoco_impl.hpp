@@ -54,7 +54,6 @@ struct MujocoPlant::Impl {
         carried(o.carried),
         floor(o.floor),
         rates(o.rates),
-        softened_for(o.softened_for),
         delay(o.delay),
         motor_torque(o.motor_torque),
         external(o.external),
@@ -75,7 +74,6 @@ struct MujocoPlant::Impl {
   void take_bumps(const std::vector<RisingDisc>& now);
   void place_floor();
   void set_friction();
-  void set_softness(double h);
   void move_ground(double dt);
   void apply(const ExternalWrench& w);
   void check_input(const Eigen::VectorXd& targets, const StepInput& input, double dt) const;
@@ -109,7 +107,6 @@ struct MujocoPlant::Impl {
   std::vector<CarriedMass> carried;
   FloorPose floor;            // pose of the floor in the last step
   std::vector<double> rates;  // rate at which a bump rises [m/s], by geom
-  double softened_for = 0;    // step for which contacts got their stiffness [s]; 0 if none did
   TargetDelay delay;
   Eigen::VectorXd motor_torque, external;  // torque on each dof in MuJoCo's last step [N m]
   RobotState state;

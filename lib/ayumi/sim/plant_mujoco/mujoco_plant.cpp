@@ -66,7 +66,6 @@ void MujocoPlant::Impl::set_inertias() {
   for (int i = 0; i < m->nv; ++i) m->dof_simplenum[i] = 0;
   const MujocoData scratch(mj_makeData(m.get()), mj_deleteData);
   mj_setConst(m.get(), scratch.get());
-  softened_for = 0;  // the softness depends on inertias
 }
 
 void MujocoPlant::Impl::find_indices() {
@@ -351,7 +350,6 @@ void MujocoPlant::Impl::step(const VectorXd& targets, const StepInput& input, do
   Eigen::Map<VectorXd>(d->xfrc_applied, 6 * m->nbody).setZero();
   take_input(targets, input);
   place_floor();
-  set_softness(h);
   set_friction();
   before = Eigen::Map<const VectorXd>(d->qvel, m->nv);
   mj_step1(m.get(), d.get());
