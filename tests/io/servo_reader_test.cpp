@@ -250,7 +250,7 @@ TEST(ServoReader, TheOffsetOfAnEncoderIsTheSameInAllProfiles) {
   for (const std::string& same : {gain, gain + ", " + offset}) {
     const RobotModel model = robot_of(folder, unit(gain + ", " + offset, same));
     for (const char* profile : {"a", "b"})
-      EXPECT_EQ(knee(model, profile).offset, 0.4 * EIGEN_PI / 180);
+      EXPECT_DOUBLE_EQ(knee(model, profile).offset, 0.4 * EIGEN_PI / 180);
   }
   EXPECT_EQ(error_of(folder, unit(gain + ", " + offset, other)),
             "robot.json: /profiles: the encoder of l_knee has an offset of 0.5 deg in the profile "

@@ -76,7 +76,8 @@ struct Swing {
     for (int s = 0; s < 2; ++s) plan.index[s] = interval_index(plan.intervals[s]);
     std::vector<Isometry3d> poses(count, from);
     for (int k = still; k < count; ++k) poses[k] = k < still + 100 ? path((k - still) / 100.0) : to;
-    return scrapes(sole, plan, Side::right, poses, kLow, kSlip);
+    return scrapes(
+        sole, plan, Side::right, [&](int k) { return poses[static_cast<size_t>(k)]; }, kLow, kSlip);
   }
 
   int count() const {

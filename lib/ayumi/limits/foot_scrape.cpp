@@ -54,12 +54,12 @@ bool swings(const ContactPlan& plan, Side side, int k) {
 class CornerOfSwing {
  public:
   CornerOfSwing(const ContactPlan& plan, Side side, int interval, const Sole& sole, int corner,
-                const std::vector<Isometry3d>& poses)
+                const std::function<Isometry3d(int)>& pose_at)
       : intervals_(plan.intervals[static_cast<int>(side)]),
         interval_(interval),
         corner_(corner),
         in_sole_(sole.polygon[corner].x(), sole.polygon[corner].y(), 0),
-        poses_(poses) {}
+        pose_at_(pose_at) {}
 
   bool stood() const { return interval_ > 0; }
   bool will_stand() const { return interval_ + 1 < static_cast<int>(intervals_.size()); }
@@ -84,7 +84,7 @@ class CornerOfSwing {
   }
 
  private:
-  Vector3d position(int k) const { return poses_[k] * in_sole_; }
+  Vector3d position(int k) const { return pose_at_(k) * in_sole_; }
   Vector3d rest(int place) const { return intervals_[place].sole * in_sole_; }
   Vector3d normal(int place) const { return intervals_[place].sole.linear().col(2); }
   double way(int k, const Vector3d& from, int place) const {
@@ -94,20 +94,20 @@ class CornerOfSwing {
   const std::vector<ContactInterval>& intervals_;
   int interval_, corner_;
   Vector3d in_sole_;
-  const std::vector<Isometry3d>& poses_;
+  const std::function<Isometry3d(int)>& pose_at_;
 };
 
 }  // namespace
 
 std::vector<std::vector<Scrape>> scrapes(const Sole& sole, const ContactPlan& plan, Side side,
-                                         const std::vector<Isometry3d>& poses, double low,
+                                         const std::function<Isometry3d(int)>& pose_at, double low,
                                          double slip) {
-  std::vector<std::vector<Scrape>> found(poses.size());
+  std::vector<std::vector<Scrape>> found(plan.index[static_cast<int>(side)].size());
   const std::vector<ContactInterval>& intervals = plan.intervals[static_cast<int>(side)];
   for (int i = 0; i < static_cast<int>(intervals.size()); ++i) {
     if (intervals[i].contact || intervals.size() == 1) continue;
     for (int c = 0; c < static_cast<int>(sole.polygon.size()); ++c) {
-      const CornerOfSwing corner(plan, side, i, sole, c, poses);
+      const CornerOfSwing corner(plan, side, i, sole, c, pose_at);
       const auto is_low = [&](int k) { return swings(plan, side, k) && corner.at(k).height < low; };
       for (int first = intervals[i].first; first <= intervals[i].last; ++first) {
         if (!is_low(first)) continue;
@@ -126,7 +126,8 @@ namespace {
 
 void note_poses(JudgedMotion& motion, const JudgedSample& s, const RobotData& data) {
   for (const Side side : {Side::left, Side::right})
-    motion.sole_poses[static_cast<int>(side)][s.k] = sole_pose(motion.model, data, side);
+    if (Isometry3d* const pose = motion.pose_in_swing(side, s.k))
+      *pose = sole_pose(motion.model, data, side);
 }
 
 // Rounding must not make an error of a corner that a repair leaves at the limit. A sole that is too
@@ -137,8 +138,9 @@ void judge_scrapes(JudgedMotion& motion) {
   const double deep = motion.tolerance(FindingKind::foot_penetration);
   for (const Side side : {Side::left, Side::right}) {
     const int foot = static_cast<int>(side);
-    const auto found =
-        scrapes(motion.model.sole(side), motion.plan, side, motion.sole_poses[foot], least, slip);
+    const auto found = scrapes(
+        motion.model.sole(side), motion.plan, side,
+        [&](int k) { return *motion.pose_in_swing(side, k); }, least, slip);
     for (int k = 0; k < motion.count(); ++k) {
       double height = least;
       for (const Scrape& scrape : found[k]) height = std::min(height, scrape.height);
@@ -154,17 +156,6 @@ const RowKind kScrapeRows = {.name = "scrape",
                              .beyond_check = true,
                              .order = {2, 5}};
 
-std::vector<Isometry3d> sole_poses(const RobotModel& model, Side side, const CommandSeries& series,
-                                   RobotData& data) {
-  std::vector<Isometry3d> poses;
-  poses.reserve(series.samples.size());
-  for (const CommandSample& sample : series.samples) {
-    update_positions(model, sample.state, data);
-    poses.push_back(sole_pose(model, data, side));
-  }
-  return poses;
-}
-
 // The corners that scrape in the given motion or in an earlier result have rows, over the plane
 // over which the check measures their heights.
 void place_scrape_rows(RowSite& site) {
@@ -179,8 +170,16 @@ void place_scrape_rows(RowSite& site) {
     // The scraping corners by sample and place.
     std::map<std::pair<int, int>, std::set<int>> corners;
     for (const CommandSeries* series : watched) {
-      const auto found = scrapes(sole, site.plan, side,
-                                 sole_poses(site.model, side, *series, site.data), least, slip);
+      std::map<int, Isometry3d> poses;  // of samples that were asked for
+      const auto pose_at = [&](int k) {
+        const auto [pose, is_new] = poses.try_emplace(k, Isometry3d::Identity());
+        if (is_new) {
+          update_positions(site.model, series->samples[k].state, site.data);
+          pose->second = sole_pose(site.model, site.data, side);
+        }
+        return pose->second;
+      };
+      const auto found = scrapes(sole, site.plan, side, pose_at, least, slip);
       for (int k = 0; k < static_cast<int>(found.size()); ++k)
         for (const Scrape& scrape : found[k]) corners[{k, scrape.place}].insert(scrape.corner);
     }

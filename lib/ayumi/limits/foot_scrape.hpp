@@ -2,6 +2,7 @@
 // Corners of a swinging sole that slide along the ground, for the check and for the repair.
 
 #include <Eigen/Geometry>
+#include <functional>
 #include <vector>
 
 #include "ayumi/demand/contact_plan.hpp"
@@ -16,11 +17,12 @@ struct Scrape {
   double height = 0;  ///< height of the corner over this plane, negative below it [m]
 };
 
-/// The scraping corners of one foot, by sample. `poses` has the poses of the sole in the world, by
-/// sample. A corner is on the ground while it is lower than `low` [m], and it scrapes where it is
-/// farther than `slip` [m] along the ground from the places in which it is at rest.
+/// The scraping corners of one foot, by sample. `pose_at` gives the pose of the sole in the world
+/// in a sample of a swing. A corner is on the ground while it is lower than `low` [m], and it
+/// scrapes where it is farther than `slip` [m] along the ground from the places in which it is at
+/// rest.
 std::vector<std::vector<Scrape>> scrapes(const Sole& sole, const ContactPlan& plan, Side side,
-                                         const std::vector<Eigen::Isometry3d>& poses, double low,
-                                         double slip);
+                                         const std::function<Eigen::Isometry3d(int)>& pose_at,
+                                         double low, double slip);
 
 }  // namespace ayumi

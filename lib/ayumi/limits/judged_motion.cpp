@@ -27,11 +27,19 @@ JudgedMotion::JudgedMotion(const RobotModel& model, const CommandSeries& series,
       cog(count(), Vector3d::Zero()),
       cog_deviation(count(), 0.0),
       soles{std::vector<SoleError>(count()), std::vector<SoleError>(count())},
-      sole_poses{std::vector<Eigen::Isometry3d>(count()), std::vector<Eigen::Isometry3d>(count())},
       rough(count(), 0) {
+  for (int foot = 0; foot < 2; ++foot)
+    for (const ContactInterval& interval : plan.intervals[foot])
+      swing_poses[foot].emplace_back(interval.contact ? 0 : interval.last - interval.first + 1);
   for (Violation& extreme : extremes_) extreme.sample = -1;
   for (const FindingSpec* spec : summary_figures())
     if (spec->figure.least) summary[spec->kind] = std::numeric_limits<double>::infinity();
+}
+
+Eigen::Isometry3d* JudgedMotion::pose_in_swing(Side side, int k) {
+  const int foot = static_cast<int>(side), i = plan.index[foot][k];
+  if (plan.intervals[foot][i].contact) return nullptr;
+  return &swing_poses[foot][i][k - plan.intervals[foot][i].first];
 }
 
 int largest_axis(const Vector3d& v) {

@@ -43,6 +43,8 @@ struct JudgedMotion {
 
   int count() const { return static_cast<int>(series.samples.size()); }
   double tolerance(FindingKind kind) const { return tolerance_of[kind]; }
+  /// The place of sample k in swing_poses; null while this foot is in contact.
+  Eigen::Isometry3d* pose_in_swing(Side side, int k);
   bool flies(int k) const {
     return k >= 0 && k < count() && series.samples[k].support == Support::none;
   }
@@ -92,8 +94,9 @@ struct JudgedMotion {
   std::vector<double> cog_deviation;
   /// Errors by Side and sample; a swing only has the depth.
   std::array<std::vector<SoleError>, 2> soles;
-  /// Poses of the soles in the world, by Side and sample.
-  std::array<std::vector<Eigen::Isometry3d>, 2> sole_poses;
+  /// Poses of the swinging soles in the world, by Side, contact interval and sample of the
+  /// interval; none for intervals in contact.
+  std::array<std::vector<std::vector<Eigen::Isometry3d>>, 2> swing_poses;
   std::vector<char> rough;  ///< whether a joint accelerates beyond the tolerance, by sample
 
   // Filled by look_ahead of the limit that uses it.

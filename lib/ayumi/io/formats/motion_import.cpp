@@ -592,8 +592,10 @@ bool of_encoders(const MotionFile& read, const ImportOptions& options, const std
   if (options.sent) return true;
   if (read.of_joints) return false;
   if (options.measured_at) return *options.measured_at == MeasuredAt::encoder;
+  if (options.commands) return true;
+  // A table with a head row or in JSON may come from anywhere.
   const MotionFormat* const known = find_motion_format(format);
-  return options.commands || format == "hoap" || (known && known->played);
+  return known && known->played && format != "csv" && format != "json";
 }
 
 // The robot keeps the last target of a sequence, so a short one can be made longer.
