@@ -427,6 +427,23 @@ void find_sag(const JointRecording& recording, IdentifiedJoint& joint) {
   if (joint.has_sag) joint.sag = (xy - x * y / n) / (xx - x * x / n);
 }
 
+// The distance of the unloaded joint from its command if the recording does not determine the
+// stiffness. The fit could then explain any offset by a load of the joint, so the stiffness of the
+// robot's file is taken. Half the width of the interval is the whole sag by this stiffness.
+ServoEstimate offset_at_known_stiffness(const JointRecording& recording, double lag, double kp) {
+  double offset = 0, sag = 0;
+  for (const Index k : recording.compared) {
+    const double late = command_at(recording, recording.dt * static_cast<double>(k) - lag);
+    const double own = recording.torque[k] / kp;
+    offset += recording.measured[k] - late + own;
+    sag += std::abs(own);
+  }
+  const double count = std::max(1.0, static_cast<double>(recording.compared.size()));
+  ServoEstimate result = estimate(offset / count, sag / count);
+  result.known = false;
+  return result;
+}
+
 void describe(const TypeFit& type, size_t i, const JointRecording& recording,
               const ServoDescription& servo, bool own_servo, IdentifiedJoint& joint) {
   const ServoFit& fit = type.fit;
@@ -478,6 +495,8 @@ void describe(const TypeFit& type, size_t i, const JointRecording& recording,
   if (!recording.load_known)
     for (ServoEstimate* each : {&joint.kp, &joint.damping, &joint.viscous, &joint.coulomb})
       *each = {each->value, 0, HUGE_VAL, false};
+  if (!joint.kp.known && servo.kp > 0)
+    joint.offset = offset_at_known_stiffness(recording, joint.lag, servo.kp);
   joint.confounded = Advice(type, joint, recording.load_known).words;
 }
 
