@@ -170,7 +170,9 @@ TEST(IdentifyCommand, TheNextTableCompensatesTheOffsetThatWasFound) {
     const std::string file = "found_" + format + ".csv";
     ayumi({"export", "found_squat.json", "--format", format, "-o", file, "-q", "--servo", "lead"});
     EXPECT_NEAR(knee_of(file, "true.json"), wanted, 0.02 * degree);
-    EXPECT_NEAR(knee_of(file, "base.json") - wanted, -offset, 0.02 * degree);
+    // The offset that was found is right to 0.02 degrees; and the other leg, which is then shorter,
+    // takes over a part of the load, so that this knee yields less by up to 0.02 degrees.
+    EXPECT_NEAR(knee_of(file, "base.json") - wanted, -offset, 0.04 * degree);
   }
   EXPECT_NE(contents(folder / "found_csv.csv").find("# servo_offset: "), std::string::npos);
   // The second round finds the same offset, because the joints of the unit follow the table now.
