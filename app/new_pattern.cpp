@@ -24,19 +24,22 @@ bool choose_profile(const Context& context, Task& task, bool written_anyway) {
   if (chooses) {
     task.profile = task.pattern.profile = need.sufficient.front();
     judged = judge(task);
-  } else if (!need.text.empty()) {
-    context.print(need.text + "\n");
+    if (judged.good() || written_anyway)
+      context.print("the pattern names the profile " + task.profile + ", because " + need.text +
+                    "\n");
   }
-  if (chooses && (judged.good() || written_anyway))
-    context.print("the pattern names the profile " + task.profile + ", because " + need.text +
-                  "\n");
-  if (judged.good()) return true;
+  if (judged.good()) {
+    if (!chooses && !need.text.empty()) context.print(need.text + "\n");
+    return true;
+  }
   const std::vector<Finding>& findings = judged.report.findings;
   const auto error = std::find_if(findings.begin(), findings.end(),
                                   [](const Finding& f) { return f.severity == Severity::error; });
   // A goal of VIIP that is too strong for the actuators is not a finding of the motion.
+  const std::string lacks = judged.need().text;
   context.print("the check finds the new pattern inconsistent: " +
-                (error != findings.end() ? finding_with_hint(*error) : judged.need().text) + "\n");
+                (error != findings.end() ? finding_with_hint(*error) : lacks) + "\n");
+  if (error != findings.end() && !lacks.empty()) context.print(lacks + "\n");
   return false;
 }
 

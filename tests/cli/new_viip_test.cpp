@@ -53,5 +53,24 @@ TEST_F(NewViip, LongStepsHoldTheCogLowerAndNameTheirActuators) {
   EXPECT_NE(contents(folder.path() / "v.json").find("\"profile\": \"hoap1\""), std::string::npos);
 }
 
+// A goal that no profile can reach is no finding of the motion.
+TEST_F(NewViip, GoalsThatAreTooStrongForEveryProfileAreRefused) {
+  std::string profiles;
+  for (const char* name : {"hoap1", "hoap1-soft", "hoap1-strong", "hoap1-strong-soft"})
+    profiles += std::string(profiles.empty() ? "" : ", ") + R"({ "name": ")" + name +
+                R"(", "limits": [{ "joints": ["*"], "speed": 0.8 }] })";
+  write(folder / "slow.json", R"({ "format": "ayumi.robot/1", "base": "hoap1", "name": "slow",
+    "profiles": [)" + profiles + "] }");
+  const Output refused = make({"--robot", "slow.json", "--steps", "6", "--velocity", "0.3"});
+  EXPECT_EQ(refused.exit_code, 1) << refused.out << refused.err;
+  EXPECT_NE(refused.out.find("no other profile is strong enough"), std::string::npos)
+      << refused.out;
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "v.json"));
+  const Output written =
+      make({"--robot", "slow.json", "--steps", "6", "--velocity", "0.3", "--allow-inconsistent"});
+  EXPECT_EQ(written.exit_code, 0) << written.out << written.err;
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "v.json"));
+}
+
 }  // namespace
 }  // namespace ayumi::test
