@@ -5,6 +5,7 @@
 
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/io/json/document_format.hpp"
 #include "ayumi/io/pattern/pattern_scope.hpp"
 #include "ayumi/io/pattern/study_file.hpp"
 #include "ayumi/io/run/sha256.hpp"
