@@ -390,16 +390,15 @@ TEST(RecordedReplay, ARecordedWalkOfARealRobot) {
     GTEST_SKIP() << "no recordings of HOAP-3 at " << data;
   const Folder folder;
   const std::string robot = AYUMI_SOURCE_DIR "/examples/hoap3/recorded.json";
-  const Output replayed =
-      run_program({"replay", data + "/motions/walk_m03_fujitsu_sample_pulses_1ms.csv", "--robot",
-                   robot, "--robot-path", data + "/hoap3_description", "-o", "out", "-q"},
-                  folder.path());
-  ASSERT_EQ(replayed.exit_code, 0)  // it stands in every plant
-      << replayed.out << replayed.err;
+  const Output replayed = run_program(
+      {"replay", data + "/motions/walk_m03_fujitsu_sample_pulses_1ms.csv", "--robot", robot,
+       "--robot-path", data + "/hoap3_description", "--plant", "ayumi", "-o", "out", "-q"},
+      folder.path());
+  ASSERT_EQ(replayed.exit_code, 0) << replayed.out << replayed.err;
   const Output compared =
       run_program({"compare", "out", data + "/recordings/walk_m03_measured_encoder_pulses_1ms.csv",
                    data + "/recordings/walk_m03_measured_sensors_adc_1ms.csv", "--robot", robot,
-                   "--robot-path", data + "/hoap3_description", "--log", "ayumi", "--json", "-q"},
+                   "--robot-path", data + "/hoap3_description", "--json", "-q"},
                   folder.path());
   ASSERT_EQ(compared.exit_code, 0) << compared.err;
   const Json json = Json::parse(compared.out);
