@@ -1,6 +1,7 @@
 #include "ayumi/check/mistake_hypotheses.hpp"
 
 #include <algorithm>
+#include <initializer_list>
 
 #include "ayumi/author/edit/edit.hpp"
 #include "ayumi/base/text.hpp"
@@ -18,73 +19,18 @@ namespace ayumi {
 
 namespace {
 
-std::vector<Hypothesis> units(const ExaminedPattern& of) {
+using HypothesisFinder = void(const ExaminedPattern&, std::vector<Hypothesis>&);
+
+// What these functions find, in their order.
+std::vector<Hypothesis> found_by(std::initializer_list<HypothesisFinder*> finders,
+                                 const ExaminedPattern& of) {
   std::vector<Hypothesis> made;
-  hypotheses::angle_units(of, made);
-  hypotheses::time_units(of, made);
-  hypotheses::stretched_keys(of, made);
-  hypotheses::length_units(of, made);
-  hypotheses::target_units(of, made);
+  for (HypothesisFinder* const find : finders) find(of, made);
   return made;
 }
 
-std::vector<Hypothesis> times(const ExaminedPattern& of) {
-  std::vector<Hypothesis> made = block_hypotheses(of.pattern);
-  hypotheses::ground_heights(of, made);
-  hypotheses::turns(of, made);
-  hypotheses::level_feet(of, made);
-  hypotheses::stoops(of, made);
-  hypotheses::all_sides(of, made);
-  hypotheses::crossed_footholds(of, made);
-  hypotheses::key_times(of, made);
-  hypotheses::phase_times(of, made);
-  return made;
-}
-
-std::vector<Hypothesis> irregular(const ExaminedPattern& of) {
-  std::vector<Hypothesis> made = block_hypotheses(of.pattern);
-  hypotheses::ground_heights(of, made);
-  hypotheses::phase_times(of, made);
-  hypotheses::foothold_exchanges(of, made);
-  hypotheses::zmp_sides(of, made);
-  hypotheses::zmp_keys(of, made);
-  hypotheses::all_zmp_keys(of, made);
-  hypotheses::turns(of, made);
-  hypotheses::swings(of, made);
-  hypotheses::double_supports(of, made);
-  hypotheses::leg_keys(of, made);
-  hypotheses::unlike_sides(of, made);
-  hypotheses::interpolations(of, made);
-  hypotheses::rests(of, made);
-  hypotheses::level_feet(of, made);
-  hypotheses::stoops(of, made);
-  return made;
-}
-
-std::vector<Hypothesis> exchanges(const ExaminedPattern& of) {
-  std::vector<Hypothesis> made;
-  hypotheses::footholds(of, made);
-  hypotheses::swapped_axes(of, made);
-  hypotheses::zmp_sides(of, made);
-  hypotheses::zmp_keys(of, made);
-  hypotheses::all_zmp_keys(of, made);
-  hypotheses::phase_sides(of, made);
-  hypotheses::starts(of, made);
-  hypotheses::key_sides(of, made);
-  hypotheses::unlike_sides(of, made);
-  return made;
-}
-
-std::vector<Hypothesis> missing(const ExaminedPattern& of) {
-  std::vector<Hypothesis> made;
-  hypotheses::swings(of, made);
-  hypotheses::double_supports(of, made);
-  hypotheses::leg_keys(of, made);
-  hypotheses::interpolations(of, made);
-  hypotheses::level_cog(of, made);
-  hypotheses::held_cog(of, made);
-  hypotheses::rests(of, made);
-  return made;
+void unequal_blocks(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
+  made = block_hypotheses(of.pattern);
 }
 
 std::vector<Hypothesis> nearer(const ExaminedPattern& of) {
@@ -142,15 +88,33 @@ const std::vector<WrittenValue>& Hypotheses::values() const { return examined_->
 std::vector<Hypothesis> Hypotheses::of(Kind kind) const {
   switch (kind) {
     case Kind::units:
-      return units(*examined_);
+      return found_by({hypotheses::angle_units, hypotheses::time_units, hypotheses::stretched_keys,
+                       hypotheses::length_units, hypotheses::target_units},
+                      *examined_);
     case Kind::times:
-      return times(*examined_);
+      return found_by(
+          {unequal_blocks, hypotheses::ground_heights, hypotheses::turns, hypotheses::level_feet,
+           hypotheses::stoops, hypotheses::all_sides, hypotheses::crossed_footholds,
+           hypotheses::key_times, hypotheses::phase_times},
+          *examined_);
     case Kind::irregular:
-      return irregular(*examined_);
+      return found_by({unequal_blocks, hypotheses::ground_heights, hypotheses::phase_times,
+                       hypotheses::foothold_exchanges, hypotheses::zmp_sides, hypotheses::zmp_keys,
+                       hypotheses::all_zmp_keys, hypotheses::turns, hypotheses::swings,
+                       hypotheses::double_supports, hypotheses::leg_keys, hypotheses::unlike_sides,
+                       hypotheses::interpolations, hypotheses::rests, hypotheses::level_feet,
+                       hypotheses::stoops},
+                      *examined_);
     case Kind::exchanges:
-      return exchanges(*examined_);
+      return found_by({hypotheses::footholds, hypotheses::swapped_axes, hypotheses::zmp_sides,
+                       hypotheses::zmp_keys, hypotheses::all_zmp_keys, hypotheses::phase_sides,
+                       hypotheses::starts, hypotheses::key_sides, hypotheses::unlike_sides},
+                      *examined_);
     case Kind::missing:
-      return missing(*examined_);
+      return found_by({hypotheses::swings, hypotheses::double_supports, hypotheses::leg_keys,
+                       hypotheses::interpolations, hypotheses::level_cog, hypotheses::held_cog,
+                       hypotheses::rests},
+                      *examined_);
     case Kind::nearer:
       return nearer(*examined_);
     case Kind::paces:
