@@ -29,9 +29,11 @@ import math
 import os
 import random
 import re
+import resource
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 SOURCE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
@@ -40,7 +42,7 @@ PROGRAMS = ["check_tests", "limits_tests", "control_tests", "sim_tests", "plan_t
             "scenarios_tests"]
 # The program whose `selftest` compares results bit for bit.
 SELFTEST = "ayumi"
-# Largest duration of a test that is run [s].
+# Largest processor time of a test that is run [s].
 LONGEST_TEST = 60.0
 JOBS = min(2, os.cpu_count() or 1)
 PLUS, MINUS = r"(?<= )\+(?= )", r"(?<= )-(?= )"
@@ -260,30 +262,38 @@ class Test:
 
 
 def run(build, tests, limit, **environment):
-    """Exit code of tests of one program; None where they took longer than `limit` seconds."""
+    """Exit code of tests of one program, and their processor time.
+
+    They are stopped after `limit` seconds of processor time, and after twenty times as long if
+    they only wait. Then the exit code is a negative number.
+    """
     names = [test.name for test in tests]
     if tests[0].program == SELFTEST:
         words = [os.path.join(build, "app", SELFTEST), "selftest", *names, "--threads", "1"]
     else:
         words = [os.path.join(build, "tests", tests[0].program), "--gtest_brief=1",
                  "--gtest_fail_fast", "--gtest_filter=" + ":".join(names)]
-    try:
-        return subprocess.run(words, cwd=SOURCE, stdout=subprocess.DEVNULL,
-                              stderr=subprocess.DEVNULL, timeout=limit, check=False,
-                              env=os.environ | environment).returncode
-    except subprocess.TimeoutExpired:
-        return None
+    seconds = math.ceil(limit)
+    process = subprocess.Popen(
+        words, cwd=SOURCE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+        env=os.environ | environment)
+    resource.prlimit(process.pid, resource.RLIMIT_CPU, (seconds, seconds))
+    waits = threading.Timer(20 * limit, process.kill)
+    waits.start()
+    _, status, usage = os.wait4(process.pid, 0)
+    waits.cancel()
+    process.returncode = os.waitstatus_to_exitcode(status)
+    return process.returncode, usage.ru_utime + usage.ru_stime
 
 
 def trace(build, test, count):
     """Runs a test without a fault. Returns it with the faults that it reaches, or None."""
     with tempfile.TemporaryDirectory() as folder:
         record = os.path.join(folder, "reached")
-        begin = time.monotonic()
-        if run(build, [test], LONGEST_TEST, AYUMI_FAULTS_REACHED=record) != 0:
+        code, test.seconds = run(build, [test], LONGEST_TEST, AYUMI_FAULTS_REACHED=record)
+        if code != 0:
             print(f"not used: {test.program} {test.name}", flush=True)
             return None
-        test.seconds = time.monotonic() - begin
         with open(record, "rb") as file:
             reached = file.read()
     test.reached = frozenset(i for i in range(count) if reached[i])
@@ -316,11 +326,11 @@ def noticed_by(build, index, tests, most_seconds):
                and sum(test.seconds for test in batch) + left[0].seconds < least):
             batch.append(left.pop(0))
         least *= 2
-        begin = time.monotonic()
         limit = 10 + 10 * sum(test.seconds for test in batch)
-        if run(build, batch, limit, AYUMI_FAULT=str(index)) != 0:
+        code, seconds = run(build, batch, limit, AYUMI_FAULT=str(index))
+        if code != 0:
             return batch[0].program + " " + ":".join(test.name for test in batch)[:60]
-        spent += time.monotonic() - begin
+        spent += seconds
     return ""
 
 
