@@ -33,9 +33,10 @@ void require_options(const LogExport& options, const Command& command) {
   for (const Option& option : command.own_options()) {
     const std::string shown = option.shown_name();
     if (option.count() > 0 && std::find(known.begin(), known.end(), shown) == known.end())
-      fail(ErrorCode::usage, shown + ": this option is for joint tables only, but --format " +
-                                 options.format +
-                                 " writes the log of a run; leave this option out");
+      fail(ErrorCode::usage,
+           shown + ": this option is for joint tables only, but --format " + options.format +
+               " writes the log of a run; leave this option out, or choose the format "
+               "of a table (csv, json, hoap)");
   }
   if (fs::path(options.output).extension() != extension_of(options.format))
     fail(ErrorCode::usage, {options.output},

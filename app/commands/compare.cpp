@@ -262,9 +262,9 @@ void add_compare(Command& app, Context& context) {
       ->type_name("F");
   command
       ->add_option("--measured-at", options.at,
-                   "What measured the angles. encoder: the encoders of the servos, whose readings "
-                   "lack the offsets that the robot's file states. joint: instruments at the "
-                   "joints.")
+                   "What measured the angles. encoder: the encoders of the servos; the offsets "
+                   "that the robot's file states are added to their readings. joint: instruments "
+                   "at the joints.")
       ->check(one_of({"encoder", "joint"}))
       ->capture_default_str();
   command->add_option("--unit", unit, "Unit of the joint columns whose names do not state a unit.")

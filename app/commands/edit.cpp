@@ -466,7 +466,7 @@ void loop_cycle(Context& context, const EditCommand& options) {
          "the best cycle of two steps begins at " +
              text::fixed(static_cast<double>(cycle.begin) * input.series.dt, 3) +
              " s, and its end does not meet its beginning; the differences are: " +
-             gap_words(cycle.gap) +
+             gap_and_limits(cycle.gap) +
              "; take a walk that has more steps, all of the same length and period");
   const std::string table = table_beside(options.out).string();
   const CommandSeries closed = with_closed_cycle(input.series, cycle);
@@ -524,7 +524,7 @@ void loop(Context& context, const EditCommand& options) {
   if (!before.closed) {
     if (options.over <= 0)
       fail(ErrorCode::bad_pattern, {options.pattern},
-           "the end of the motion differs from its beginning: " + gap_words(before) +
+           "the end of the motion differs from its beginning: " + gap_and_limits(before) +
                "; --over S adds a transition of S seconds from the end to the beginning");
     // The first samples again, at rest: the beginning is held for a moment.
     Pattern still = once;
@@ -557,7 +557,7 @@ void loop(Context& context, const EditCommand& options) {
   const LoopGap closed = loop_gap(input.robot, {input.pattern, input.series});
   if (!closed.closed)
     fail(ErrorCode::bad_pattern, {options.pattern},
-         "the end of the motion still differs from its beginning: " + gap_words(closed) +
+         "the end of the motion still differs from its beginning: " + gap_and_limits(closed) +
              "; edit bake and edit ramp can bring both ends to rest in one "
              "posture");
   const Pattern round = input.pattern;

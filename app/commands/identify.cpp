@@ -223,10 +223,10 @@ void add_identify(Command& app, Context& context) {
       ->check(one_of({"auto", "feet", "fixed"}));
   command
       ->add_option("--measured-at", options.at,
-                   "What measured the angles. encoder: the encoders of the servos, whose readings "
-                   "lack the offsets that ROBOT states. joint: instruments at the joints, which do "
-                   "not share the zeros of the encoders. Only these show the offsets, so only then "
-                   "does the sidecar state new offsets.")
+                   "What measured the angles. encoder: the encoders of the servos; the offsets "
+                   "that ROBOT states are added to their readings. joint: instruments at the "
+                   "joints. Only such instruments show offsets of the encoders, so the new sidecar "
+                   "states new offsets only with joint.")
       ->check(one_of({"encoder", "joint"}))
       ->capture_default_str();
   command->add_option("--unit", unit, "Unit of the joint columns whose names do not state a unit.")

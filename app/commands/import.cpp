@@ -182,11 +182,12 @@ void add_import(Command& app, Context& context) {
       "servos to get the joint angles. This is always done for reference tables, that is, "
       "for reference.csv of a run and for the csv and json tables of export.");
   command
-      ->add_option("--measured-at", at,
-                   "What the angles are. encoder: readings or targets of the encoders of ROBOT, to "
-                   "which the offsets that ROBOT states are added. joint: angles of the joints "
-                   "(default: encoder for --commands and for formats that a robot plays or "
-                   "records, otherwise joint; the head of a table of Ayumi states its offsets).")
+      ->add_option(
+          "--measured-at", at,
+          "What the angles are. encoder: readings or targets of encoders; the offsets that "
+          "ROBOT states are added to them. joint: joint angles (default: encoder for "
+          "--commands and for formats that a robot plays or records, otherwise joint; a "
+          "table of Ayumi states its own offsets in its head).")
       ->check(one_of({"encoder", "joint"}));
   command
       ->add_option("--smooth", options.how.reading.smooth,

@@ -122,10 +122,10 @@ std::string smooth_words(const RepairResult& result) {
 
 // What the motion that is made from scratch begins with, and which keys of the COG it misses.
 std::string start_words(const Pattern& pattern, const GeneratedMotion& made) {
-  std::string out = "  made from postures for the planned feet, ";
+  std::string out = "  the motion was made from postures with the planned feet and ";
   out += made.cog == PlannedCog::zmp
-             ? "where the COG follows the ZMP in place of its keys between the first and the last"
-             : "and the COG as planned";
+             ? "a COG that follows the ZMP; of its keys, only the first and the last are used"
+             : "the planned COG";
   if (made.lowered > 0)
     out += "; the COG is " + text::fixed(1e3 * made.lowered, 1) + " mm lower than " +
            (pattern.cog_height > 0 ? "cog_height of the defaults" : "by default");

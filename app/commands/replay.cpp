@@ -77,6 +77,10 @@ bool has_head(const std::string& bytes) {
 
 RobotModel robot_of(const ReplayCommand& options, const Context& context,
                     const std::string& bytes) {
+  if (bytes.find("\"ayumi.pattern/") != std::string::npos)
+    fail(ErrorCode::bad_file, {options.file},
+         "this is a pattern, but replay needs a table; `ayumi export` writes the table of a "
+         "pattern");
   std::string recorded;
   if (options.robot.empty() && has_head(bytes)) recorded = robot_in_head(bytes, options.file);
   if (options.robot.empty() && recorded.empty())

@@ -252,7 +252,7 @@ void GaitMaker::make(const GaitCell& cell, GaitResult& result, const Progress& p
   if (!open.closed)
     throw Missing{"loop",
                   std::string("the end of the ") + (whole.closed ? "cycle" : "walk") +
-                      " does not meet its beginning; the differences are: " + gap_words(open)};
+                      " does not meet its beginning; the differences are: " + gap_and_limits(open)};
 
   simulate(task, json, progress);
   json["certificate"] = nullptr;

@@ -489,9 +489,9 @@ def gain(text):
 
 LAWS = [
     ("DTAD", []),
-    ("`ka=0 conform=0`: no short term", gain("ka=0 conform=0")),
+    ("`ka=0 conform=0`: no short-term feedback", gain("ka=0 conform=0")),
     ("`damp=0`: rocking is not damped", gain("damp=0")),
-    ("`long=0`: no long term", gain("long=0")),
+    ("`long=0`: no long-term feedback", gain("long=0")),
     ("`washout=0`: offsets are not forgotten", gain("washout=0")),
     ("`ankle=0`: a tipped foot is not levelled", gain("ankle=0")),
     ("`conform=0`: ankles do not yield on bumps", gain("conform=0")),

@@ -148,7 +148,7 @@ std::vector<Broken> broken_robots() {
               "robot.json: /position_limits_deg/r_knee: the lower limit 10 deg exceeds the upper "
               "limit -10 deg"),
       sidecar("unknown_gain", "\"tau_z\": 0.01", "\"tau_y\": 0.01",
-              "hoap1 sidecar: dtad has no gain 'tau_y'"),
+              "robot.json: /control/dtad/tau_y: dtad has no gain 'tau_y'"),
       sidecar("wrong_type", "\"servo_period\": 0.001", "\"servo_period\": \"fast\"",
               "/servo_period"),
       sidecar("readings_older_than_the_motion", "\"latency\": 0.003", "\"latency\": 1e9",

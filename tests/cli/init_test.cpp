@@ -103,7 +103,7 @@ TEST(Init, FiveJointLegsShuffle) {
     EXPECT_EQ(ayumi(folder, {"check", kind + ".json"}).exit_code, 0) << kind << made.out;
     EXPECT_EQ(ayumi(folder, {"simulate", kind + ".json"}).exit_code, 0) << kind << made.out;
     const std::string cannot =
-        "a leg has 5 joints, not six, so there are places at which it cannot put the sole level";
+        "a leg has only 5 joints, so at some places the leg cannot put the sole level";
     const size_t said = made.out.find(cannot);
     EXPECT_EQ(said != std::string::npos, kind == "walk") << made.out;
     EXPECT_EQ(made.out.rfind(cannot), said);  // it is said only once

@@ -257,7 +257,8 @@ TEST(BrokenRobot, WrongSidecars) {
             "of 57.3 deg");
   EXPECT_EQ(sidecar_error(", \"encoders\": {\"l_hip\": {\"device\": 1, \"counts_per_degree\": 1}, "
                           "\"r_hip\": {\"device\": 1, \"counts_per_degree\": 1}}"),
-            "robot.json: /encoders/r_hip/device: the joint 'l_hip' has this device already");
+            "robot.json: /encoders/r_hip/device: device 1 belongs to the joint 'l_hip' already; "
+            "give each joint a device of its own");
   EXPECT_EQ(sidecar_error(", \"joint_order\": [\"l_hip\"]"),
             "robot.json: /joint_order: the joint 'r_hip' is missing; add it");
   EXPECT_EQ(sidecar_error(", \"profiles\": [{\"name\": \"a\", \"limits\": [{\"joints\": [\"*\"], "

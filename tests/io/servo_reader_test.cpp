@@ -321,7 +321,7 @@ TEST(ServoReader, SaysWhichKeysDoNotGoTogether) {
   EXPECT_NE(group_error(R"("position_gain": 2)").find("'speed_gain'"), std::string::npos);
   EXPECT_NE(group_error(R"("motor": {"voltage": 7})").find("'torque_constant'"), std::string::npos);
   EXPECT_EQ(group_error(R"("motor": {"voltage": 0, "torque_constant": 1, "resistance": 1})"),
-            at + "/motor/voltage: this value must be above 0");
+            at + "/motor/voltage: this value must be above 0, but it is 0");
   EXPECT_EQ(group_error(R"("kp": 2, "motor": {"voltage": 7, "torque_constant": 1, "resistance": 1,
                            "gain": 3})"),
             at + "/motor/gain: the group states 'kp' too; keep one of them");
@@ -342,7 +342,7 @@ TEST(ServoReader, SaysWhatIsWrongWithABamFile) {
   EXPECT_EQ(error("command_delay", 6),
             "motor.json: /command_delay: 6 s is too large; the largest allowed value is 0.1 s; "
             "state it in seconds: 3.7 ms is 0.0037");
-  EXPECT_EQ(error("R", 0), "motor.json: /R: this value must be above 0");
+  EXPECT_EQ(error("R", 0), "motor.json: /R: this value must be above 0, but it is 0");
   EXPECT_EQ(error("kt", "high"), "motor.json: /kt: expected a number, found a string");
   EXPECT_EQ(error_of(folder, servo_sidecar(R"({"joints": ["*_knee"], "bam": "motor.json"})")),
             "motor.json: /kt: expected a number, found a string");

@@ -246,7 +246,7 @@ TEST(RobotModel, NamesWhatIsWrongInTheUrdf) {
   EXPECT_EQ(error_of([](auto& r) { r.joints[0].damping = std::nan(""); }),
             "biped.urdf: joint l_knee: a number of this joint is not finite; correct it");
   EXPECT_EQ(error_of([](auto& r) { r.joints[0].friction = -1; }),
-            "biped.urdf: joint l_knee: velocity, effort, damping and friction cannot be negative");
+            "biped.urdf: joint l_knee: its friction is -1; it cannot be negative");
   EXPECT_EQ(error_of([](auto& r) { r.joints[0].axis.setZero(); }),
             "biped.urdf: joint l_knee: its axis has length zero; give it a direction");
   EXPECT_EQ(error_of([](auto& r) { r.joints[0].lower = 3; }),
@@ -326,7 +326,7 @@ TEST(RobotModel, NamesWhatIsWrongInTheSidecar) {
   EXPECT_EQ(error_of([](auto& r) {
               r.joint_order = {"l_hip", "l_hip", "r_hip", "r_knee"};
             }),
-            "robot.json: /joint_order: 'l_hip' appears twice");
+            "robot.json: /joint_order: 'l_hip' appears twice; keep one");
   EXPECT_EQ(error_of([](auto& r) { r.trunk_link = "trunc"; }),
             "robot.json: /trunk_link: the link 'trunc' does not exist; did you mean 'trunk'?");
   EXPECT_EQ(error_of([](auto& r) { r.sensors.imu_link = "trunc"; }),
@@ -344,13 +344,13 @@ TEST(RobotModel, NamesWhatIsWrongInTheSidecar) {
 
 TEST(RobotModel, NamesNumbersThatTheSidecarCannotHave) {
   EXPECT_EQ(error_of([](auto& r) { r.servos["l_knee"].kp = -1; }),
-            "robot.json: /servos/l_knee: servo constants cannot be negative");
+            "robot.json: /servos/l_knee: kp is -1; it cannot be negative");
   for (const double period : {0.0, 1e-8, 11.0})
     EXPECT_EQ(
         error_of([&](auto& r) { r.servo_period = period; }),
         "robot.json: /servo_period: " + text::brief(period) + " s is given; give 1e-7 to 10 s");
   EXPECT_EQ(error_of([](auto& r) { r.soft_limit_margin = -0.01; }),
-            "robot.json: /soft_limit_margin: the value cannot be negative");
+            "robot.json: /soft_limit_margin: the value is -0.01; it cannot be negative");
   const auto in_profile = [](const std::function<void(ActuatorProfile&)>& change) {
     return error_of([&](RobotDescription& robot) {
       robot.profiles.resize(1);
@@ -359,7 +359,7 @@ TEST(RobotModel, NamesNumbersThatTheSidecarCannotHave) {
     });
   };
   EXPECT_EQ(in_profile([](auto& p) { p.thermal_window = 0; }),
-            "robot.json: /profiles: profile 'strong': thermal_window must be above 0 s");
+            "robot.json: /profiles: profile 'strong': thermal_window is 0 s; it must be above 0 s");
   EXPECT_EQ(
       in_profile([](auto& p) { p.speed["l_knee"] = 0; }),
       "robot.json: /profiles: profile 'strong': the speed of 'l_knee' is 0; it must be above 0");
@@ -388,7 +388,7 @@ TEST(RobotModel, NamesSolesThatCannotBe) {
             "robot.json: /soles/left/polygon: the sole has 33 corners, but at most 32 are "
             "possible; leave out corners between which the outline is almost straight");
   EXPECT_EQ(error_of([](auto& r) { r.soles["left"].damping_time = -1; }),
-            "robot.json: /soles/left: stiffness and damping_time cannot be negative");
+            "robot.json: /soles/left: damping_time is -1; it cannot be negative");
   EXPECT_EQ(error_of([](auto& r) { r.sensors.force_cells["middle"].resize(1); }),
             "robot.json: /sensors/force_cells/middle: the robot has no such sole");
   for (const size_t cells : {1, 4})

@@ -394,8 +394,8 @@ const Condition kMovesCog = {
     }};
 
 const Condition kTouchesByFoot = {
-    "the leg of the cause overlaps only while its foot is displaced, and by at most this "
-    "displacement",
+    "the leg of this foot overlaps only while the foot is displaced, and the overlap is at most as "
+    "large as the displacement",
     [](Scene& scene, int i, int j, const Interval&) {
       const Violation& foot = scene.of(i);
       const int hip = scene.motion.model.leg(static_cast<Side>(foot.item)).front();

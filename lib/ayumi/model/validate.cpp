@@ -101,8 +101,13 @@ void validate_joint_numbers(const RobotDescription& robot, const JointDescriptio
     complain_urdf(robot, where,
                   "lower limit " + text::brief(joint.lower) + " exceeds the upper limit " +
                       text::brief(joint.upper) + "; swap them");
-  if (joint.velocity < 0 || joint.effort < 0 || joint.damping < 0 || joint.friction < 0)
-    complain_urdf(robot, where, "velocity, effort, damping and friction cannot be negative");
+  for (const auto& [what, value] :
+       {std::pair("velocity", joint.velocity), std::pair("effort", joint.effort),
+        std::pair("damping", joint.damping), std::pair("friction", joint.friction)})
+    if (value < 0)
+      complain_urdf(
+          robot, where,
+          std::string("its ") + what + " is " + text::exact(value) + "; it cannot be negative");
 }
 
 void validate_mimic(const RobotDescription& robot, const JointDescription& joint) {
@@ -251,7 +256,8 @@ std::vector<int> ordered_dof_joints(const RobotDescription& robot) {
   }
   if (robot.joint_order.empty()) return moving;
   const std::string name = twice(robot.joint_order);
-  if (!name.empty()) complain_sidecar(robot, "/joint_order", "'" + name + "' appears twice");
+  if (!name.empty())
+    complain_sidecar(robot, "/joint_order", "'" + name + "' appears twice; keep one");
   std::vector<int> ordered;
   for (size_t i = 0; i < robot.joint_order.size(); ++i) {
     const std::string& wanted = robot.joint_order[i];
@@ -331,8 +337,11 @@ void validate_sole(const RobotDescription& robot, const std::string& side,
           robot, pointer + "/polygon/" + std::to_string((i + 1) % corners.size()),
           "at this corner, the polygon is not convex or not counter-clockwise" + remedy);
   }
-  if (!(sole.stiffness >= 0) || !(sole.damping_time >= 0))
-    complain_sidecar(robot, pointer, "stiffness and damping_time cannot be negative");
+  for (const auto& [what, value] :
+       {std::pair("stiffness", sole.stiffness), std::pair("damping_time", sole.damping_time)})
+    if (!(value >= 0))
+      complain_sidecar(robot, pointer,
+                       std::string(what) + " is " + text::exact(value) + "; it cannot be negative");
 }
 
 void validate_force_cells(const RobotDescription& robot) {
@@ -351,10 +360,14 @@ void validate_force_cells(const RobotDescription& robot) {
 
 void validate_servos(const RobotDescription& robot) {
   for (const auto& [name, servo] : robot.servos)
-    if (!(servo.kp >= 0 && servo.kd >= 0 && servo.rotor_inertia >= 0 && servo.viscous >= 0 &&
-          servo.coulomb >= 0))
-      complain_sidecar(robot, "/servos/" + json_pointer_token(name),
-                       "servo constants cannot be negative");
+    for (const auto& [what, value] :
+         {std::pair("kp", servo.kp), std::pair("kd", servo.kd),
+          std::pair("rotor_inertia", servo.rotor_inertia), std::pair("viscous", servo.viscous),
+          std::pair("coulomb", servo.coulomb)})
+      if (!(value >= 0))
+        complain_sidecar(
+            robot, "/servos/" + json_pointer_token(name),
+            std::string(what) + " is " + text::exact(value) + "; it cannot be negative");
 }
 
 }  // namespace
@@ -383,7 +396,9 @@ void validate_sidecar(const RobotDescription& robot, const std::vector<std::stri
       positive(robot, pointer, owner + what, *values);
     }
     if (!(profile.thermal_window > 0))
-      complain_sidecar(robot, pointer, owner + "thermal_window must be above 0 s");
+      complain_sidecar(robot, pointer,
+                       owner + "thermal_window is " + text::exact(profile.thermal_window) +
+                           " s; it must be above 0 s");
   }
   if (!robot.trunk_link.empty()) known_link(robot, "/trunk_link", robot.trunk_link);
   if (!robot.sensors.imu_link.empty())
@@ -397,7 +412,9 @@ void validate_sidecar(const RobotDescription& robot, const std::vector<std::stri
     complain_sidecar(robot, "/servo_period",
                      text::brief(robot.servo_period) + " s is given; give 1e-7 to 10 s");
   if (!(robot.soft_limit_margin >= 0))
-    complain_sidecar(robot, "/soft_limit_margin", "the value cannot be negative");
+    complain_sidecar(
+        robot, "/soft_limit_margin",
+        "the value is " + text::exact(robot.soft_limit_margin) + "; it cannot be negative");
 }
 
 }  // namespace ayumi

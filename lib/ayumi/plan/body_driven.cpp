@@ -375,10 +375,10 @@ void describe(const SampleJob& job, const CogPlan& plan, const Worst& worst,
       (worst.lean > kNotedLean || std::max(worst.miss, worst.swing) > kNotedMiss)) {
     const size_t joints = std::min(job.ik.leg(Side::left).size(), job.ik.leg(Side::right).size());
     origin["legs"] =
-        "a leg has " + std::to_string(joints) +
-        (job.ik.coupled().empty() ? " joints, not six,"
-                                  : " joints of its own and one that moves both legs, not six,") +
-        " so there are places at which it cannot put the sole level: the trunk leans by up to " +
+        "a leg has only " + std::to_string(joints) +
+        (job.ik.coupled().empty() ? " joints"
+                                  : " joints of its own, and one more joint moves both legs") +
+        ", so at some places the leg cannot put the sole level: the trunk leans by up to " +
         text::fixed(worst.lean * 180 / std::numbers::pi, 1) +
         " deg, and a supporting sole is up to " + millimetres(worst.miss) +
         " away from its place (allowed " + millimetres(kLackingTolerance) + ")";

@@ -23,11 +23,14 @@ void refuse_unknown_places(const Pattern& pattern, const RobotModel& robot) {
   for (size_t i = 0; i < pattern.scenario.size(); ++i) {
     const Disturbance& d = pattern.scenario[i];
     const SourcePlace place = {pattern.file, "/scenario/" + std::to_string(i)};
+    const bool push = std::holds_alternative<Push>(d.what);
     const auto refuse_link = [&](const std::string& name) {
       if (std::find(links.begin(), links.end(), name) == links.end())
-        fail_unknown_name(place + "/on", robot.name() + " has no link '" + name +
-                                             "'; 'cog' pushes through the centre of gravity" +
-                                             text::suggestion(name, links));
+        fail_unknown_name(place + "/on",
+                          robot.name() + " has no link '" + name + "'" +
+                              (push ? "; 'cog' pushes through the centre of gravity"
+                                    : "; `ayumi inspect ROBOT --json` lists the links") +
+                              text::suggestion(name, links));
     };
     const auto refuse_joint = [&](const std::string& name) {
       if (!name.empty() && std::find(joints.begin(), joints.end(), name) == joints.end())

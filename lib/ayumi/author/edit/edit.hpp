@@ -121,6 +121,9 @@ struct LoopGap {
 };
 /// Throws Error(bad_pattern) if a foot is in the air at the beginning or at the end.
 LoopGap loop_gap(const RobotModel& model, const MotionPart& motion);
+/// A motion is closed if every difference is below the value here (and soles turn by less than
+/// 0.01 rad). `joint` is empty.
+LoopGap largest_loop_gap();
 
 struct Ramps {
   /// Duration of the transition at the beginning and at the end [s]; 0 for no transition.

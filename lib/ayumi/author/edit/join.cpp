@@ -43,6 +43,9 @@ constexpr double kSameAngle = 0.01;
 /// Chosen: a step of 2e-4 rad in 1 ms is 0.2 rad/s, far below the speed limits of servos.
 constexpr double kSameBase = 2e-5;
 constexpr double kSameJoint = 2e-4;
+/// Largest difference of a joint's rate that counts as zero [rad/s]. Chosen: the rate of a joint
+/// that moves by kSameJoint in a millisecond.
+constexpr double kSameRate = 1e3 * kSameJoint;
 /// Time within which such a difference fades after the join [s]. Chosen: the acceleration is then
 /// at most 0.12 rad/s^2; within one tick of 1 ms, it would be 200 rad/s^2, and even a difference of
 /// 1e-5 rad in the legs would move the ZMP out of the soles.
@@ -286,8 +289,10 @@ void require_same_posture(const RobotModel& model, const Pattern& second, const 
     fail(ErrorCode::bad_pattern, in_file(second, "/start"),
          "the base is " + text::fixed(1000 * distance, 2) + " mm and " +
              text::fixed(turn * 180 / M_PI, 2) +
-             " deg away from its place at the end of the first motion; "
-             "join the motions with `ayumi edit blend --over S`");
+             " deg away from its place at the end of the first motion (limits " +
+             text::fixed(1000 * kSameBase, 2) + " mm and " +
+             text::fixed(kSameJoint * 180 / M_PI, 2) +
+             " deg); join the motions with `ayumi edit blend --over S`");
   if (most < kSameJoint) return;
   fail(ErrorCode::bad_pattern, in_file(second, "/start"),
        model.dofs()[worst].name + " is " + text::fixed(most * 180 / M_PI, 2) +
@@ -571,6 +576,15 @@ Pattern chained(const RobotModel& model, const MotionPart& first, const MotionPa
   return result;
 }
 
+LoopGap largest_loop_gap() {
+  LoopGap gap;
+  gap.feet = kSamePlace;
+  gap.posture = kSameJoint;
+  gap.base = kSameBase;
+  gap.rate = kSameRate;
+  return gap;
+}
+
 LoopGap loop_gap(const RobotModel& model, const MotionPart& motion) {
   const CommandSample &begin = motion.series.samples.front(), &end = motion.series.samples.back();
   require_stand(motion.pattern, begin, "start");
@@ -591,9 +605,6 @@ LoopGap loop_gap(const RobotModel& model, const MotionPart& motion) {
   gap.base = (end.state.base.position - again.base.position).norm();
   gap.rate =
       (end.state.velocity() - begin.state.velocity()).tail(model.dof_count()).cwiseAbs().maxCoeff();
-  // Largest difference of a joint's rate that counts as zero [rad/s]. Chosen: the rate of a joint
-  // that moves by kSameJoint in a millisecond.
-  constexpr double kSameRate = 1e3 * kSameJoint;
   gap.closed = gap.feet < kSamePlace && turn < kSameAngle && gap.posture < kSameJoint &&
                gap.base < kSameBase && gap.rate < kSameRate;
   return gap;

@@ -20,6 +20,7 @@
 #include <utility>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/json_pointer.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/control/torque_feedforward.hpp"
 #include "ayumi/dynamics/inverse_kinematics.hpp"
@@ -174,11 +175,10 @@ DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
   std::vector<std::string> names;
   if (poles) names = {"k", "d"};
   for (const auto& [name, field] : fields) names.push_back(name);
-  auto set = [&](const std::string& name, double value, const std::string& where,
-                 ErrorCode code = ErrorCode::usage) {
+  auto set = [&](const std::string& name, double value, const auto& refuse) {
     if (!std::isfinite(value) || value < 0)
-      fail(code, where + ": gain " + name + " is " + text::brief(value) +
-                     "; a gain must be a finite number that is not negative");
+      refuse("gain " + name + " is " + text::brief(value) +
+             "; a gain must be a finite number that is not negative");
     if (poles && name == "k")
       p.k = value;
     else if (poles && name == "d")
@@ -186,8 +186,8 @@ DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
     else if (const auto found = fields.find(name); found != fields.end())
       *found->second = value;
     else
-      fail(code, where + ": " + name_of(p.kind) + " has no gain '" + name + "'" +
-                     text::suggestion(name, names) + " (known: " + text::join(names, ", ") + ")");
+      refuse(name_of(p.kind) + " has no gain '" + name + "'" + text::suggestion(name, names) +
+             " (known: " + text::join(names, ", ") + ")");
   };
   // The parameters of the body are the robot's own ones under every law.
   DtadParams dtad;
@@ -195,10 +195,14 @@ DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
   for (const char* name : {"k", "d"}) of_dtad[name] = nullptr;
   for (const auto& [name, value] : model.description().control.dtad)
     if (p.kind == ControllerKind::dtad || !of_dtad.contains(name) || fields.contains(name))
-      set(name, value, model.name() + " sidecar", ErrorCode::bad_model);
+      set(name, value, [&](const std::string& what) {
+        fail(ErrorCode::bad_model,
+             {model.description().sidecar_file, "/control/dtad/" + json_pointer_token(name)}, what);
+      });
   bool q_given = false;
   for (const auto& [name, value] : spec.gains) {
-    set(name, value, "controller gains");
+    set(name, value,
+        [](const std::string& what) { fail(ErrorCode::usage, "controller gains: " + what); });
     q_given |= name == "q";
   }
   if (p.k.has_value() != p.d.has_value())

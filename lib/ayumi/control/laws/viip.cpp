@@ -19,6 +19,7 @@
 #include <map>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/json_pointer.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/control/support_region.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
@@ -159,21 +160,25 @@ ViipParams viip_params(const RobotModel& model, const ControllerSpec& spec) {
   const std::map<std::string, double*> fields = gain_fields(p);
   std::vector<std::string> names;
   for (const auto& [name, field] : fields) names.push_back(name);
-  auto set = [&](const std::string& name, double value, const std::string& where,
-                 ErrorCode code = ErrorCode::usage) {
+  auto set = [&](const std::string& name, double value, const auto& refuse) {
     if (!std::isfinite(value) || value < 0)
-      fail(code, where + ": gain " + name + " is " + text::brief(value) +
-                     "; a gain must be a finite number that is not negative");
+      refuse("gain " + name + " is " + text::brief(value) +
+             "; a gain must be a finite number that is not negative");
     const auto found = fields.find(name);
     if (found == fields.end())
-      fail(code, where + ": viip has no gain '" + name + "'" + text::suggestion(name, names) +
-                     " (known: " + text::join(names, ", ") + ")");
+      refuse("viip has no gain '" + name + "'" + text::suggestion(name, names) +
+             " (known: " + text::join(names, ", ") + ")");
     *found->second = value;
   };
   for (const auto& [name, value] : model.description().control.viip)
-    set(name, value, model.name() + " sidecar", ErrorCode::bad_model);
+    set(name, value, [&](const std::string& what) {
+      fail(ErrorCode::bad_model,
+           {model.description().sidecar_file, "/control/viip/" + json_pointer_token(name)}, what);
+    });
   if (spec.type.kind == ControllerKind::viip)
-    for (const auto& [name, value] : spec.gains) set(name, value, "controller gains");
+    for (const auto& [name, value] : spec.gains)
+      set(name, value,
+          [](const std::string& what) { fail(ErrorCode::usage, "controller gains: " + what); });
   for (const char* name : {"q", "goal", "tau_z", "kz", "kz_one", "single", "both", "lift"})
     if (!(*fields.at(name) > 0))
       fail(ErrorCode::usage, std::string("controller gains: ") + name + " is " +

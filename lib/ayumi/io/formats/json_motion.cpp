@@ -175,7 +175,9 @@ MotionFile read_deep_mimic(const MotionInput& source) {
   if (const auto duration = root.find("FrameDuration")) {
     const std::vector<std::vector<double>> rows = frames_of(source, root, 8);
     const double step = duration->number();
-    if (!(step > 0)) duration->complain("the duration of a frame must be above 0 s");
+    if (!(step > 0))
+      duration->complain("the duration of a frame must be above 0 s, but it is " +
+                         text::exact(step) + " s");
     motion.rate = 1 / step;
     for (size_t k = 0; k < rows.size(); ++k)
       motion.base.push_back(frame_root(source, rows[k], k, 0, 3, false));
@@ -190,8 +192,9 @@ MotionFile read_deep_mimic(const MotionInput& source) {
       motion.times.push_back(now);
       now += rows[k][0];
       if (!(rows[k][0] > 0) && k + 1 < rows.size())
-        source.refuse(
-            0, "Frames: frame " + std::to_string(k + 1) + ": the duration must be above 0 s");
+        source.refuse(0, "Frames: frame " + std::to_string(k + 1) +
+                             ": the duration must be above 0 s, but it is " +
+                             text::exact(rows[k][0]) + " s");
       BasePose base = frame_root(source, rows[k], k, 1, 4, true);
       base.position = {base.position.x(), -base.position.z(), base.position.y()};
       base.attitude = upright() * base.attitude * upright().conjugate();

@@ -472,7 +472,7 @@ std::vector<double> times_of(const MotionFile& motion, const ImportOptions& opti
       fail(ErrorCode::bad_file, {file},
            "this format does not state how many rows a second has; give --rate HZ (LAFAN1 "
            "for Unitree G1 has 30 rows per second). If the rate is twice the true rate, all "
-           "speeds are 2 times and all accelerations 4 times too high");
+           "speeds are twice and all accelerations four times the true ones");
     for (size_t k = 0; k < rows; ++k) times.push_back(static_cast<double>(k) / rate);
     return times;
   }

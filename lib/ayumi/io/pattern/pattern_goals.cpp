@@ -18,6 +18,21 @@ int read_count(const JsonNode& node, PatternScope& scope, double most) {
   return static_cast<int>(count);
 }
 
+void refuse_too_fast(const JsonNode& velocity, double speed) {
+  if (speed > kFastest)
+    velocity.complain("the velocity must be at most 10 m/s, but it is " + text::brief(speed) +
+                      " m/s");
+}
+
+/// `rate` is in rad/s, and the message has the angle unit of the pattern.
+void refuse_too_quick(const JsonNode& turn, double rate, double radians_per_unit) {
+  const std::string unit = radians_per_unit == 1 ? " rad/s" : " deg/s";
+  if (std::abs(rate) > kFastest)
+    turn.complain("the turning rate must be at most " +
+                  text::brief(kFastest / radians_per_unit, 3) + unit + ", but it is " +
+                  text::brief(std::abs(rate) / radians_per_unit, 3) + unit);
+}
+
 StepGoal read_steps(const JsonNode& node, PatternScope& scope) {
   StepGoal goal;
   if (const auto step = node.find("step")) {
@@ -32,14 +47,11 @@ StepGoal read_steps(const JsonNode& node, PatternScope& scope) {
   if (const auto velocity = node.find("velocity")) {
     const std::vector<double> v = read_numbers(*velocity, scope, 2, 2, "[forward, left]");
     goal.velocity = {v[0], v[1]};
-    if (goal.velocity.norm() > kFastest) velocity->complain("the velocity must be at most 10 m/s");
+    refuse_too_fast(*velocity, goal.velocity.norm());
   }
   if (const auto turn = node.find("turn")) {
     goal.turn = read_angle(*turn, scope);
-    if (std::abs(goal.turn) > kFastest)
-      turn->complain("the turning rate must be at most " +
-                     text::brief(kFastest / *scope.radians_per_unit, 3) +
-                     (*scope.radians_per_unit == 1 ? " rad/s" : " deg/s"));
+    refuse_too_quick(*turn, goal.turn, *scope.radians_per_unit);
   }
   return goal;
 }
@@ -73,7 +85,7 @@ ViipGoal read_viip_goal(const JsonNode& node, PatternScope& scope) {
   if (node.has("cog")) return CogGoal{read_vector3(node.at("cog"), scope)};
   if (const auto velocity = node.find("cog_velocity")) {
     const CogVelocityGoal goal{read_vector3(*velocity, scope)};
-    if (goal.velocity.norm() > kFastest) velocity->complain("the velocity must be at most 10 m/s");
+    refuse_too_fast(*velocity, goal.velocity.norm());
     return goal;
   }
   if (node.has("jump")) return read_jump(node.at("jump"), scope);

@@ -209,7 +209,8 @@ Keyframe read_keyframe(const JsonNode& node, double before, PatternScope& scope)
   if (const auto weights = node.find("weights"))
     for (const auto& [joint, weight] : weights->members()) {
       key.weights[joint] = read_number(weight, scope);
-      if (key.weights[joint] <= 0) weight.complain("a weight must be above 0");
+      if (key.weights[joint] <= 0)
+        weight.complain("a weight must be above 0, but it is " + text::exact(key.weights[joint]));
     }
   return key;
 }
@@ -235,7 +236,9 @@ CorrectionTrack read_correction(const JsonNode& node) {
   CorrectionTrack track;
   track.begin = read_number(node.at("begin"), scope, -kLongestPattern, kLongestPattern);
   track.spacing = read_number(node.at("spacing"), scope);
-  if (track.spacing <= 0) node.at("spacing").complain("this value must be above 0");
+  if (track.spacing <= 0)
+    node.at("spacing").complain("this value must be above 0, but it is " +
+                                text::exact(track.spacing));
   static const std::vector<std::string> base = {"base.x[m]",    "base.y[m]",    "base.z[m]",
                                                 "base.rx[rad]", "base.ry[rad]", "base.rz[rad]"};
   const std::vector<JsonNode> columns = node.at("columns").items();

@@ -117,7 +117,8 @@ void read_defaults(const JsonNode& root, PatternScope& scope, Pattern& pattern) 
   if (const auto posture = defaults->find("posture")) pattern.default_posture = posture->string();
   if (const auto height = defaults->find("cog_height")) {
     pattern.cog_height = read_number(*height, scope);
-    if (pattern.cog_height <= 0) height->complain("this value must be above 0");
+    if (pattern.cog_height <= 0)
+      height->complain("this value must be above 0, but it is " + text::exact(pattern.cog_height));
   }
   if (const auto model = defaults->find("cog_model"))
     pattern.full_model = model->one_of({"full", "point_mass"}) == "full";

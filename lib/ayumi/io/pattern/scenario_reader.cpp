@@ -25,7 +25,9 @@ Vector2d read_vector2(const JsonNode& node, PatternScope& scope) {
 
 void read_range(const JsonNode& node, PatternScope& scope, double& low, double& high) {
   const std::vector<double> ends = read_numbers(node, scope, 2, 2, "[from, to]");
-  if (!(ends[1] > ends[0])) node.complain("the range is empty: [from, to] needs from < to");
+  if (!(ends[1] > ends[0]))
+    node.complain("the range is empty: [from, to] needs from < to, but " + text::exact(ends[0]) +
+                  " is not below " + text::exact(ends[1]));
   low = ends[0];
   high = ends[1];
 }
@@ -37,13 +39,16 @@ void read_rectangle(const JsonNode& node, PatternScope& scope, Vector2d& low, Ve
 
 double read_positive(const JsonNode& node, PatternScope& scope, double upper) {
   const double value = read_number(node, scope, 0, upper);
-  if (!(value > 0)) node.complain("this value must be above 0");
+  if (!(value > 0)) node.complain("this value must be above 0, but it is " + text::exact(value));
   return value;
 }
 
 double read_tilt(const JsonNode& node, PatternScope& scope) {
   const double angle = read_angle(node, scope);
-  if (std::abs(angle) > 1) node.complain("a slope must be at most 1 rad (57 deg)");
+  if (std::abs(angle) > 1)
+    node.complain("a slope must be at most 1 rad (57 deg), but it is " +
+                  text::brief(std::abs(angle)) + " rad (" +
+                  text::brief(std::abs(angle) * 180 / M_PI, 3) + " deg)");
   return angle;
 }
 
@@ -90,7 +95,8 @@ HeightField read_field(const JsonNode& node, PatternScope& scope) {
       rows[i].complain("this row has " + std::to_string(row.size()) +
                        " heights, but the first row has " + std::to_string(field.heights.cols()));
     for (size_t j = 0; j < row.size(); ++j) {
-      if (std::abs(row[j]) > kHighest) rows[i].complain("a height must be at most 10 m");
+      if (std::abs(row[j]) > kHighest)
+        rows[i].complain("a height must be at most 10 m, but it is " + text::exact(row[j]) + " m");
       field.heights(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = row[j];
     }
   }
@@ -115,7 +121,9 @@ FloorMotion read_motion(const JsonNode& node, PatternScope& scope) {
     frequency->complain("only a sine has a frequency; remove this key");
   read_tilts(node, scope, path.tilt);
   if (const auto shift = node.find("shift")) path.shift = read_vector3(*shift, scope);
-  if (path.shift.norm() > kHighest) node.at("shift").complain("the shift must be at most 10 m");
+  if (path.shift.norm() > kHighest)
+    node.at("shift").complain("the shift must be at most 10 m, but it is " +
+                              text::brief(path.shift.norm()) + " m");
   if (path.tilt.isZero(0) && path.shift.isZero(0))
     node.complain("the floor does not move: give roll, pitch or shift");
   return motion;

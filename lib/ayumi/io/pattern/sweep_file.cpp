@@ -385,7 +385,7 @@ SweepStudy::SweepStudy(const std::string& text, const std::filesystem::path& pat
     measures_.verdict = false;
     for (const JsonNode& item : measure->items()) {
       const std::string what = item.one_of(kMeasures);
-      if (contains(measure_names_, what)) item.complain("'" + what + "' appears twice");
+      if (contains(measure_names_, what)) item.complain("'" + what + "' appears twice; keep one");
       measure_names_.push_back(what);
     }
     if (measure_names_.empty()) measure->complain("the list is empty; name what to measure");

@@ -41,7 +41,8 @@ void read_weights(const JsonNode& node, size_t count, PatternScope& scope, Distr
                       " weights; give one weight for each value");
   double sum = 0;
   for (const double weight : d.weights) {
-    if (weight < 0) weights->complain("a weight must not be negative");
+    if (weight < 0)
+      weights->complain("a weight must not be negative, but one is " + text::exact(weight));
     sum += weight;
   }
   if (!(sum > 0)) weights->complain("one of the weights must be above 0");
@@ -90,7 +91,9 @@ Distribution read_distribution(const JsonNode& node, bool angle, PatternScope& s
   if (bounded && d.high < d.low)
     values.complain("the range is empty: " + text::brief(d.low) + " is above " +
                     text::brief(d.high));
-  if (normal && !(d.deviation > 0)) values.complain("the standard deviation must be above 0");
+  if (normal && !(d.deviation > 0))
+    values.complain("the standard deviation must be above 0, but it is " +
+                    text::exact(d.deviation));
   const double away = std::max(d.low - d.mean, d.mean - d.high) / d.deviation;
   if (d.kind == Distribution::Kind::truncated && away > kFarthestRange)
     values.complain("the range is " + text::brief(away) +

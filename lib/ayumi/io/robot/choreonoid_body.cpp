@@ -327,7 +327,9 @@ class BodyReader {
       const YAML::Node value = geometry[key];
       if (!value) complain(geometry, "link " + link.name + ": the " + type + " has no " + key);
       const double size = number(value);
-      if (!(size > 0)) complain(value, "link " + link.name + ": the " + key + " must be above 0");
+      if (!(size > 0))
+        complain(value, "link " + link.name + ": the " + key + " must be above 0, but it is " +
+                            text::exact(size));
       return size;
     };
     PlacedShape placed;

@@ -68,7 +68,7 @@ double within(const JsonNode& node, const Bounds& bounds) {
 
 double positive(const JsonNode& node, const Bounds& bounds) {
   const double value = within(node, bounds);
-  if (value == 0) node.complain("this value must be above 0");
+  if (value == 0) node.complain("this value must be above 0, but it is 0");
   return value;
 }
 

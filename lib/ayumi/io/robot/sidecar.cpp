@@ -167,10 +167,14 @@ void read_encoders(const JsonNode& node, RobotDescription& robot) {
     entry.only_keys({"device", "counts_per_degree"});
     EncoderDescription encoder;
     encoder.device = entry.at("device").integer();
-    if (encoder.device < 1) entry.at("device").complain("device numbers start at 1");
+    if (encoder.device < 1)
+      entry.at("device").complain("device numbers start at 1, but this one is " +
+                                  std::to_string(encoder.device));
     const auto [other, fresh] = owner.emplace(encoder.device, joint);
     if (!fresh)
-      entry.at("device").complain("the joint '" + other->second + "' has this device already");
+      entry.at("device").complain("device " + std::to_string(encoder.device) +
+                                  " belongs to the joint '" + other->second +
+                                  "' already; give each joint a device of its own");
     encoder.counts_per_degree = entry.at("counts_per_degree").number();
     if (encoder.counts_per_degree == 0)
       entry.at("counts_per_degree").complain("counts per degree cannot be 0");
@@ -345,7 +349,8 @@ void read_control(const JsonNode& node, RobotDescription& robot) {
     for (const JsonNode& group : groups->items()) {
       group.only_keys({"joints", "weight"});
       const double weight = group.at("weight").number();
-      if (!(weight > 0)) group.at("weight").complain("a weight must be above 0");
+      if (!(weight > 0))
+        group.at("weight").complain("a weight must be above 0, but it is " + text::exact(weight));
       for (const std::string& joint : group_joints(group, robot))
         robot.control.joint_weight[joint] = weight;
     }

@@ -219,7 +219,9 @@ class Checker {
     if (kind->ValueStr() == "mesh") needs("filename");
     for (const char* extent : {"radius", "length"})
       if (double value = 1; kind->QueryDoubleAttribute(extent, &value) == TIXML_SUCCESS)
-        if (!(value > 0)) complain(kind, owner + "the " + extent + " must be above 0");
+        if (!(value > 0))
+          complain(kind,
+                   owner + "the " + extent + " must be above 0, but it is " + text::exact(value));
   }
 
   // urdfdom requires effort and velocity. From here on, 0 means that the file does not state the

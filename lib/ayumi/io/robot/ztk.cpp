@@ -223,7 +223,8 @@ class ZtkReader {
     const ZtkField* const field = section.find(key);
     if (!field) complain(section.line, "the shape has no " + std::string(key));
     const double value = numbers(*field, 1)[0];
-    if (!(value > 0)) complain(field->line, std::string(key) + " must be above 0");
+    if (!(value > 0))
+      complain(field->line, std::string(key) + " must be above 0, but it is " + text::exact(value));
     return value;
   }
 

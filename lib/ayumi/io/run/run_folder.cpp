@@ -235,8 +235,8 @@ std::string chosen_log(const fs::path& folder, const std::vector<std::string>& n
   if (name.empty()) return has("closed_loop") ? "closed_loop" : names.front();
   if (!has(name))
     fail(ErrorCode::bad_file, place,
-         "the run has no log '" + name + "'" + text::suggestion(name, names) + " (" +
-             text::join(names, ", ") + ")");
+         "the run has no log '" + name + "'" + text::suggestion(name, names) +
+             " (known: " + text::join(names, ", ") + ")");
   return name;
 }
 

@@ -78,7 +78,7 @@ class CsvParser {
         stop("the head row is missing: the first line has the number " + shown(cell) +
              ", but it must name the columns (t[s],theta.<joint>[rad],...)");
       if (name.empty()) stop("column " + std::to_string(seen.size() + 1) + " has no name");
-      if (!seen.insert(name).second) stop("the column " + shown(cell) + " appears twice");
+      if (!seen.insert(name).second) stop("the column " + shown(cell) + " appears twice; keep one");
       table_.columns.push_back(name);
     });
   }
