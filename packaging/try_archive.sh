@@ -18,7 +18,7 @@ tar --extract --directory "$scratch/bare/try" --file "$archive"
 # Every part that has libraries of its own is tried: repair, pictures, plots, clips, the second
 # plant.
 unshare --net --pid --fork --mount --mount-proc="$scratch/bare/proc" \
-  chroot "$scratch/bare" /bin/sh -eu <<'END'
+  chroot "$scratch/bare" /usr/bin/env -i /bin/sh -eu <<'END'
 cd /try
 ayumi=$(echo /try/ayumi-*/bin/ayumi) share=$(echo /try/ayumi-*/share/ayumi)
 ln -s "$ayumi" /usr/bin/ayumi

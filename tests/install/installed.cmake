@@ -5,6 +5,12 @@
 cmake_minimum_required(VERSION 3.25)
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 
+# The variables of a developer's shell name the data and the mesh reader of a build. Without a cache
+# of meshes, the installed program needs its own mesh reader.
+unset(ENV{AYUMI_DATA})
+unset(ENV{AYUMI_MESH_READER})
+set(ENV{XDG_CACHE_HOME} off)
+
 set(stage ${SCRATCH}/stage)
 set(elsewhere ${SCRATCH}/elsewhere)
 file(REMOVE_RECURSE ${elsewhere})

@@ -138,5 +138,22 @@ TEST(MujocoPlant, RefusesWhatIsNotANumber) {
   }
 }
 
+// MuJoCo itself would continue from the first state of its model without a word.
+TEST(MujocoPlant, SaysThatItsStateBecameHuge) {
+  MujocoPlant plant(hoap1(), hoap1().limits(), World{});
+  RobotState state = hoap1().rest_state();
+  state.base.position.z() = 2;
+  state.base_angular_velocity = Vector3d::Constant(9e5);
+  plant.set_state(state);
+  try {
+    for (int i = 0; i < 100; ++i) plant.step(state.theta, {}, 1e-3);
+    FAIL() << "the base is at a height of " << plant.state().base.position.z() << " m";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("MuJoCo's state is huge or not finite"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace ayumi

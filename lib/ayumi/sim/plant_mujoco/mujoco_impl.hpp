@@ -80,6 +80,8 @@ struct MujocoPlant::Impl {
   void limit_torques();
   void account(double dt);
   void step(const Eigen::VectorXd& targets, const StepInput& input, double h);
+  void integrate();
+  bool has_diverged() const;
   void begin_report();
   void finish_report();
   void report_servos();

@@ -272,7 +272,7 @@ MujocoModel mujoco_model(const RobotModel& model, const std::vector<ContactPoint
   std::string out =
       "<mujoco><compiler angle='radian' boundmass='0'/><option gravity='0 0 " +
       text::exact(-kGravity) +
-      "' integrator='implicit' cone='elliptic' solver='Newton' impratio='10' tolerance='1e-10' "
+      "' integrator='Euler' cone='elliptic' solver='Newton' impratio='10' tolerance='1e-10' "
       "iterations='100'/><size nconmax='" +
       std::to_string(kMostContacts) + "' njmax='" + std::to_string(kMostRows) +
       "'/>"
