@@ -63,5 +63,23 @@ TEST(MotorBoard, TargetsStayWithinLimitsAnd16Bits) {
   EXPECT_EQ(far.clamps[0].kind, "range");
 }
 
+// The limits of a board are those of its type, in counts. So on a unit whose joint stands at -1
+// degree while its encoder reads 0, the board stops the joint one degree below its own limit.
+TEST(MotorBoard, LimitsAreInCountsOfTheEncoderAndNotInAnglesOfTheJoint) {
+  RobotDescription description = test::bus_description();
+  description.servos["a"].kp = 100;
+  description.servos["a"].offset = -1 * kDegree;
+  const RobotModel unit(description);
+  const BoardTargets board = board_targets(unit, table_of_a({90, 90}, 0.001));
+  EXPECT_NEAR(board.targets(0, 1), 89 * kDegree, 1e-9);
+  ASSERT_EQ(board.clamps.size(), 1u);
+  EXPECT_EQ(board.clamps[0].kind, "position");
+  EXPECT_NEAR(board.clamps[0].change, 1 * kDegree, 1e-9);
+  // At the other end, the counts allow what the joint does not.
+  const BoardTargets low = board_targets(unit, table_of_a({-19, -19}, 0.001));
+  EXPECT_NEAR(low.targets(0, 1), -19 * kDegree, 1e-9);
+  EXPECT_TRUE(low.clamps.empty());
+}
+
 }  // namespace
 }  // namespace ayumi

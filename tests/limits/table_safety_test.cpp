@@ -154,6 +154,29 @@ TEST(ExportSafety, FindsThePositionBeyondTheSoftLimit) {
   EXPECT_EQ(report.margin_joint, "b");
 }
 
+// A safe table keeps both the limits of the joint and those of the counts, which motor boards keep.
+// So the boards of a unit with another zero do not change it.
+TEST(ExportSafety, TheLimitsHoldForTheJointAndForItsEncoder) {
+  RobotDescription description = test::bus_description();
+  description.servos["b"].kp = 100;
+  for (const double zero : {0.4, -0.4}) {
+    description.servos["b"].offset = zero * kDegree;
+    const RobotModel unit(description);
+    const double lower = -18 + std::max(zero, 0.0), upper = 90 + std::min(zero, 0.0);
+    const TargetRange range = target_range(unit.dofs()[1], zero * kDegree, 0);
+    EXPECT_NEAR(range.lower, lower * kDegree, 1e-12);
+    EXPECT_NEAR(range.upper, upper * kDegree, 1e-12);
+    for (const double inside : {lower, upper}) {
+      const double beyond = inside + (inside > 0 ? 0.1 : -0.1);
+      EXPECT_TRUE(make_safe(unit, still(10, {10, inside, 0}), {}).report.safe) << inside;
+      const SafetyReport report = make_safe(unit, still(10, {10, beyond, 0}), {}).report;
+      ASSERT_EQ(report.violations.size(), 1u) << beyond;
+      EXPECT_EQ(report.violations[0].kind, "position");
+      EXPECT_NEAR(report.violations[0].limit, inside * kDegree, 1e-12);
+    }
+  }
+}
+
 TEST(ExportSafety, FindsMovingEnds) {
   const RobotModel robot = test::bus_robot();
   ReferenceTrajectory table = still(10, {10, 0, 0});

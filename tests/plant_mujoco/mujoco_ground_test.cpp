@@ -167,6 +167,41 @@ TEST_P(MujocoDisturbance, DoesTheSameInBothPlants) {
 INSTANTIATE_TEST_SUITE_P(All, MujocoDisturbance, testing::ValuesIn(disturbances()),
                          [](const auto& info) { return std::string(name_of(info.param)); });
 
+// Servos in MuJoCo have the zeros of their unit, too: with its own file, a unit with offsets stands
+// as a robot without offsets does, and on a file without offsets its elbow is wrong by the offset.
+TEST(MujocoGround, OffsetsOfAUnitAreThoseOfItsFile) {
+  static const CommandSeries stand = test::standing(hoap1(), 0.5);
+  const double offset = 0.01;
+  RobotDescription description = hoap1().description();
+  for (const char* joint : {"l_knee", "r_ankle_roll", "l_elbow"})
+    description.servos.at(joint).offset = offset;
+  const RobotModel unit(description);
+  SimulateOptions options;
+  options.settle = 0;
+  options.plant = mujoco_plant_kind();
+  options.sensor_noise = false;
+  for (const ControllerKind kind : {ControllerKind::none, ControllerKind::dtad}) {
+    options.controller.type = kind;
+    const SimulationLog plain = simulate(hoap1(), stand, options);
+    const SimulationLog own = simulate(unit, stand, options);
+    ASSERT_EQ(own.samples.size(), plain.samples.size());
+    double furthest = 0;
+    for (size_t k = 0; k < own.samples.size(); ++k)
+      furthest = std::max(
+          furthest,
+          (own.samples[k].state.theta - plain.samples[k].state.theta).cwiseAbs().maxCoeff());
+    EXPECT_LT(furthest, 1e-6);  // MuJoCo stops its solver at a tolerance
+  }
+  options.controller.type = ControllerKind::none;
+  const SimulationLog plain = simulate(hoap1(), stand, options);
+  const RobotUnit individual{unit, unit.limits()};
+  options.unit = &individual;
+  const SimulationLog other = simulate(hoap1(), stand, options);
+  const int elbow = unit.find_dof("l_elbow");
+  EXPECT_NEAR(other.samples.back().state.theta[elbow] - plain.samples.back().state.theta[elbow],
+              offset, 0.01 * offset);
+}
+
 TEST(MujocoGround, TooManyBumpsAreRefused) {
   Block block(World{}, {0, 0, 0.0205});
   StepInput input;

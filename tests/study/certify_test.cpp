@@ -215,6 +215,37 @@ TEST(UncertainTask, RefusesPushesThatHaveNoEffectAndValuesInAWrongUnit) {
   expect(of_kind("sensor_latency"), "the largest value allowed is 1; check the unit");
 }
 
+// The law knows the zeros of the robot's file, and not those by which an uncertain unit differs
+// from them. So a unit that is equal to a file with offsets stands as a robot without offsets does,
+// and the other units of this file stand as those of a file without offsets.
+TEST(UncertainTask, AUnitDiffersFromTheZerosOfItsFile) {
+  const double count = M_PI / 180 / 209;  // whole counts, so that both robots round alike
+  RobotDescription description = hoap1().description();
+  description.servos.at("l_knee").offset = 84 * count;
+  description.servos.at("r_ankle_roll").offset = -63 * count;
+  const RobotModel file(description);
+  const CommandSeries series = StandingTask::short_stand();
+  std::vector<double> errors;
+  for (const std::string value : {"0", "0.5"}) {
+    const Uncertainty unknown =
+        uncertainty(R"("quantities": [{"what": "encoder_offset", "choice": [)" + value +
+                    R"(], "on": "l_knee", "source": "test"}])");
+    std::vector<CaseResult> results;
+    for (const RobotModel* model : {&hoap1(), &file}) {
+      const UncertainTask task(*model, series, unknown, StandingTask::options());
+      const std::vector<double> drawn = values_of(task, 0);
+      EXPECT_NEAR(task.unit(drawn).actuators.servo[model->find_dof("l_knee")].offset,
+                  model->limits().servo[model->find_dof("l_knee")].offset + drawn[0], 1e-12);
+      results.push_back(task.run(task.numbers(1, 0)));
+      EXPECT_EQ(results.back().outcome, Outcome::stands) << value;
+    }
+    EXPECT_NEAR(results[0].cog_error, results[1].cog_error, 1e-6) << value;
+    EXPECT_NEAR(results[0].torque, results[1].torque, 1e-4) << value;
+    errors.push_back(results[1].cog_error);
+  }
+  EXPECT_GT(errors[1], errors[0] + 1e-4);
+}
+
 TEST(UncertainTask, ARobotEqualToItsModelRunsAsWithoutUncertainty) {
   const StandingTask same(R"("quantities": [{"what": "mass", "choice": [1], "source": "t"}])");
   const CaseNumbers numbers = same.task.numbers(1, 0);

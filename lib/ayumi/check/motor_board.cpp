@@ -60,7 +60,8 @@ BoardTargets board_targets(const RobotModel& model, const ReferenceTrajectory& t
     const double scale = counts != 0 ? counts : 1;
     double lower = -1e300, upper = 1e300, step = model.limits(options.profile).speed[j] * result.dt;
     if (dof.limited) {
-      const double a = (dof.lower - zeros[j]) * scale, b = (dof.upper - zeros[j]) * scale;
+      // The board does not know the zero of this unit, and the limits of its type are in counts.
+      const double a = dof.lower * scale, b = dof.upper * scale;
       lower = std::min(a, b);
       upper = std::max(a, b);
     }

@@ -1,7 +1,7 @@
 #pragma once
 // Processing of a table by the robot: every target becomes a whole count of 16 bits, which the
-// motor board keeps within the position limits of the joint. The board changes its target by at
-// most a given number of counts per millisecond.
+// motor board keeps within the position limits of the joint's type, in counts of the encoder. The
+// board changes its target by at most a given number of counts per millisecond.
 
 #include <string>
 #include <vector>

@@ -9,7 +9,8 @@
 // simulated.
 //
 // The rows of a repair keep, at every point,
-//   |dtheta + L ddtheta| <= largest step / dt   and   lower + m <= theta + L dtheta <= upper - m.
+//   |dtheta + L ddtheta| <= largest step / dt   and   lower + m <= theta + L dtheta <= upper - m
+// with the limits of both the joint and its encoder (target_range).
 #include <algorithm>
 
 #include "ayumi/base/text.hpp"
@@ -17,6 +18,7 @@
 #include "ayumi/limits/judged_motion.hpp"
 #include "ayumi/limits/row_site.hpp"
 #include "ayumi/limits/table_safety.hpp"
+#include "ayumi/model/encoder_angles.hpp"
 #include "ayumi/motion/servo_feedforward.hpp"
 
 namespace ayumi {
@@ -97,14 +99,14 @@ void place_step_rows(RowSite& site, int dof, double lead, double largest) {
   }
 }
 
-void place_target_rows(RowSite& site, int dof, double lead) {
+void place_target_rows(RowSite& site, int dof, double lead, double zero) {
   const Dof& joint = site.model.dofs()[dof];
   const RowSettings& settings = site.settings;
   // A tolerance below 0 requires a margin.
   const double margin =
       site.model.description().soft_limit_margin +
       std::max({settings.joint_margin, 0.0, -site.tolerance(FindingKind::table_position)});
-  const double lower = joint.lower + margin, upper = joint.upper - margin;
+  const auto [lower, upper] = target_range(joint, zero, margin);
   const double middle = 0.5 * (lower + upper), half = 0.5 * (upper - lower);
   if (!joint.limited || !(half > 0)) return;
   for (int point = 0; point < site.count(); ++point) {
@@ -119,7 +121,7 @@ void place_target_rows(RowSite& site, int dof, double lead) {
 
 void place_table_rows(RowSite& site) {
   if (site.actuators.name != site.model.limits().name || !site.series.viip.empty()) return;
-  const Eigen::VectorXd lead = velocity_lead(site.actuators);
+  const Eigen::VectorXd lead = velocity_lead(site.actuators), zeros = encoder_zeros(site.model);
   SafetyOptions options;
   options.profile = site.actuators.name;
   const Eigen::VectorXd largest = largest_steps(site.model, site.series.dt, options);
@@ -128,7 +130,8 @@ void place_table_rows(RowSite& site) {
     if (site.is_locked(i)) continue;
     if (std::isfinite(largest[i]))
       place_step_rows(site, i, lead[i], share * largest[i] / site.series.dt);
-    if (lead[i] > 0) place_target_rows(site, i, lead[i]);
+    // Without lead and zero, the rows of the joint's own position are the same.
+    if (lead[i] > 0 || zeros[i] != 0) place_target_rows(site, i, lead[i], zeros[i]);
   }
 }
 

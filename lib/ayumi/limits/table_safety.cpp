@@ -40,17 +40,12 @@ double counts_per_radian(const Dof& dof) {
   return dof.encoder.device > 0 ? dof.encoder.counts_per_degree * kDegreesPerRadian : 0;
 }
 
-struct TargetRange {
-  double lower = -kInfinity, upper = kInfinity;
-};
-
-TargetRange soft_limits(const RobotModel& model, const Dof& dof) {
-  const double margin = model.description().soft_limit_margin;
-  return dof.limited ? TargetRange{dof.lower + margin, dof.upper - margin} : TargetRange{};
+TargetRange soft_limits(const RobotModel& model, const Dof& dof, double zero) {
+  return target_range(dof, zero, model.description().soft_limit_margin);
 }
 
 TargetRange count_limits(const RobotModel& model, const Dof& dof, double zero) {
-  const TargetRange soft = soft_limits(model, dof);
+  const TargetRange soft = soft_limits(model, dof, zero);
   const double scale = counts_per_radian(dof);
   const double a = (soft.lower - zero) * scale, b = (soft.upper - zero) * scale;
   return {std::ceil(std::min(a, b) - kCountSlack), std::floor(std::max(a, b) + kCountSlack)};
@@ -147,7 +142,7 @@ class JointJudge {
  public:
   JointJudge(const RobotModel& model, int dof, const SafetyOptions& options, double dt)
       : dof_(model.dofs()[static_cast<size_t>(dof)]),
-        soft_(soft_limits(model, dof_)),
+        soft_(soft_limits(model, dof_, encoder_zeros(model)[dof])),
         scale_(std::abs(counts_per_radian(dof_))),
         beyond_(options.beyond_range),
         share_(options.step_share),
@@ -401,6 +396,11 @@ std::vector<SafetyViolation> torque_violations(const RobotModel& model,
                         begin + static_cast<double>(k) * dt, value, peak[dof], "N m", 0});
     }
   return violations.list();
+}
+
+TargetRange target_range(const Dof& dof, double zero, double margin) {
+  if (!dof.limited) return {};
+  return {dof.lower + std::max(zero, 0.0) + margin, dof.upper + std::min(zero, 0.0) - margin};
 }
 
 Eigen::VectorXd count_step_limits(const RobotModel& model, double dt,

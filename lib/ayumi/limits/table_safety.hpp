@@ -4,6 +4,7 @@
 // at once, so the table itself has to be safe.
 
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -107,6 +108,18 @@ void add_violations(SafeTable& safe, const std::vector<SafetyViolation>& violati
 /// gave in the run (rows of `reference` x dof), judged by the same profile.
 SafeTable make_safe_run(const RobotModel& model, const ReferenceTrajectory& reference,
                         const Eigen::MatrixXd& torque, const SafetyOptions& options);
+
+/// The angles to which a joint of this unit may be sent [rad] or [m].
+struct TargetRange {
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
+};
+
+/// The range in which the joint, and the reading of its encoder, keep `margin` [rad, m] from the
+/// position limits. Motor boards do not know the zeros of a unit: they keep the counts within the
+/// limits of the type (HOAP-3 manual, S.2.2, setting N). The range is infinite for a joint without
+/// limits.
+TargetRange target_range(const Dof& dof, double zero, double margin);
 
 /// The encoder counts of every row, rows x dof in the robot's joint order, with the encoder zeros
 /// of the profile of the options: the nearest whole count, or its neighbour (less than one count

@@ -6,6 +6,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/self_collision.hpp"
+#include "ayumi/limits/table_safety.hpp"
 #include "ayumi/math/track.hpp"
 #include "ayumi/model/encoder_angles.hpp"
 
@@ -20,15 +21,16 @@ constexpr double kSlide = 0.01;                // distance by which a sliding jo
 // Times of one test [s]. Chosen: 2.5 degrees per second on average, slow enough to be stopped.
 constexpr double kRest = 0.5, kMove = 2, kHold = 1;
 
-double margin_of(const RobotModel& model, const Dof& dof) {
-  return dof.prismatic ? 0 : model.description().soft_limit_margin;
+TargetRange range_of(const RobotModel& model, int j) {
+  const Dof& dof = model.dofs()[static_cast<size_t>(j)];
+  return target_range(dof, encoder_zeros(model)[j],
+                      dof.prismatic ? 0 : model.description().soft_limit_margin);
 }
 
-double wanted_change(const RobotModel& model, const Dof& dof, double from) {
-  const double size = dof.prismatic ? kSlide : kAngle;
-  if (!dof.limited) return size;
-  const double margin = margin_of(model, dof);
-  const double up = dof.upper - margin - from, down = from - (dof.lower + margin);
+double wanted_change(const RobotModel& model, int j, double from) {
+  const double size = model.dofs()[static_cast<size_t>(j)].prismatic ? kSlide : kAngle;
+  const TargetRange range = range_of(model, j);
+  const double up = range.upper - from, down = from - range.lower;
   if (up >= size) return size;
   if (down >= size) return -size;
   return up >= down ? std::max(up, 0.0) : -std::max(down, 0.0);
@@ -52,15 +54,13 @@ std::string overlapping(const RobotModel& model, const CollisionModel& collision
 double free_end(const RobotModel& model, const CollisionModel& collisions,
                 const Eigen::VectorXd& start, int j) {
   const Dof& dof = model.dofs()[static_cast<size_t>(j)];
-  const double wanted = wanted_change(model, dof, start[j]);
+  const double wanted = wanted_change(model, j, start[j]);
+  const TargetRange range = range_of(model, j);
   std::string overlap;
   for (const double change : {wanted, -wanted}) {
     Eigen::VectorXd moved = start;
     moved[j] += change;
-    const double margin = margin_of(model, dof);
-    if (change == -wanted && dof.limited &&
-        (moved[j] < dof.lower + margin || moved[j] > dof.upper - margin))
-      break;
+    if (change == -wanted && (moved[j] < range.lower || moved[j] > range.upper)) break;
     const std::string found = overlapping(model, collisions, moved);
     if (found.empty()) return moved[j];
     if (overlap.empty()) overlap = found;
@@ -80,10 +80,7 @@ double share_at(double t) {
 Eigen::VectorXd sign_test_start(const RobotModel& model) {
   Eigen::VectorXd start = encoder_zeros(model);  // here, the encoders read 0
   for (int j = 0; j < model.dof_count(); ++j) {
-    const Dof& dof = model.dofs()[static_cast<size_t>(j)];
-    if (!dof.limited) continue;
-    const double margin = margin_of(model, dof), lower = dof.lower + margin,
-                 upper = dof.upper - margin;
+    const auto [lower, upper] = range_of(model, j);
     start[j] = lower > upper ? 0.5 * (lower + upper) : std::clamp(start[j], lower, upper);
   }
   const std::string overlap = overlapping(model, CollisionModel(model), start);
