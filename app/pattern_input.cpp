@@ -8,6 +8,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
+#include "ayumi/base/largest_number.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/io/task_file.hpp"
@@ -42,9 +43,15 @@ std::map<std::string, double> read_pairs(const std::vector<std::string>& words,
     const size_t equals = word.find('=');
     double value = 0;
     const char* end = word.data() + word.size();
-    if (equals == std::string::npos || equals == 0 ||
-        std::from_chars(word.data() + equals + 1, end, value).ptr != end || !std::isfinite(value))
+    std::from_chars_result read{nullptr, std::errc::invalid_argument};
+    if (equals != std::string::npos && equals > 0)
+      read = std::from_chars(word.data() + equals + 1, end, value);
+    const bool too_large = read.ec == std::errc::result_out_of_range;
+    if (read.ptr != end || (read.ec != std::errc() && !too_large))
       fail(ErrorCode::usage, option + ": '" + word + "' does not have the form NAME=NUMBER");
+    if (too_large || !(std::abs(value) <= kLargestNumber))
+      fail(ErrorCode::usage,
+           option + ": '" + word + "' is out of range; the number must be from -1e6 to 1e6");
     pairs[word.substr(0, equals)] = value;
   }
   return pairs;

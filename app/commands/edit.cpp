@@ -481,14 +481,17 @@ void loop_cycle(Context& context, const EditCommand& options) {
     parts.insert(parts.begin(), part(0, cycle.begin));
     parts.push_back(part(cycle.end, static_cast<long>(input.series.samples.size()) - 1));
   }
-  Pattern all = parts.front();
-  CommandSeries series = sampled(all);
-  for (size_t i = 1; i < parts.size(); ++i) {
-    const CommandSeries next = sampled(parts[i]);
-    Pattern more = joined(input.robot, {all, series}, {parts[i], next}, 0, table);
-    all = std::move(more);
-    series = sampled(all);
+  // Neighbours are joined in pairs, so that a motion of many parts is not sampled as often as it
+  // has parts.
+  while (parts.size() > 1) {
+    std::vector<Pattern> pairs;
+    for (size_t i = 0; i + 1 < parts.size(); i += 2)
+      pairs.push_back(joined(input.robot, {parts[i], sampled(parts[i])},
+                             {parts[i + 1], sampled(parts[i + 1])}, 0, table));
+    if (parts.size() % 2 == 1) pairs.push_back(std::move(parts.back()));
+    parts = std::move(pairs);
   }
+  const Pattern& all = parts.front();
   const double dt = input.series.dt;
   const double begin = static_cast<double>(cycle.begin) * dt;
   const double end = static_cast<double>(cycle.end) * dt;
@@ -507,6 +510,35 @@ void loop_cycle(Context& context, const EditCommand& options) {
            {"turn_rad", cycle.turn},
            {"gap", gap_json(cycle.gap)},
            {"keys_kept", false}});
+}
+
+// Appends `next` to the motion.
+void append(const Context& context, const EditCommand& options, Task& motion,
+            const MotionPart& next, std::string& reason) {
+  CommandSeries series;
+  Pattern both = joined_pattern(context, options, motion, next, 0, series, reason);
+  motion.pattern = std::move(both);
+  motion.series = std::move(series);
+}
+
+// Repeats a closed motion options.times times. Each join samples the whole motion, so the motion is
+// doubled again and again: then the time is proportional to the length of the result.
+void repeat(const Context& context, const EditCommand& options, Task& motion, std::string& reason) {
+  Task power = motion;  // 1, 2, 4, ... times the motion
+  bool begun = false;
+  for (int left = options.times; left > 0; left /= 2) {
+    if (left % 2 == 1) {
+      if (begun)
+        append(context, options, motion, {power.pattern, power.series}, reason);
+      else
+        motion = power;
+      begun = true;
+    }
+    if (left > 1) {
+      const Task half = power;
+      append(context, options, power, {half.pattern, half.series}, reason);
+    }
+  }
 }
 
 // Makes the end equal to the beginning, by a transition if they differ, and repeats the motion.
@@ -560,15 +592,7 @@ void loop(Context& context, const EditCommand& options) {
          "the end of the motion still differs from its beginning: " + gap_and_limits(closed) +
              "; edit bake and edit ramp can bring both ends to rest in one "
              "posture");
-  const Pattern round = input.pattern;
-  const CommandSeries round_series = input.series;
-  for (int k = 1; k < options.times; ++k) {
-    CommandSeries series;
-    Pattern more =
-        joined_pattern(context, options, input, {round, round_series}, 0, series, reason);
-    input.pattern = std::move(more);
-    input.series = std::move(series);
-  }
+  repeat(context, options, input, reason);
   const Edited edited = in_own_text(options, given, input.pattern);
   write_edited(context, options, edited, check_edited(context, options, input, edited),
                std::string("  the end of the motion is the same as its beginning") +

@@ -195,7 +195,7 @@ void add_gains(Command& app, Context& context) {
   command
       ->add_option("--latency", options->latency,
                    "Latency of the sensors [s] (default: the latency in the robot's sidecar).")
-      ->check(number_within(0.0, 0.2).description(""))
+      ->check(number_within(0.0, GainStudy::kMostLatency).description(""))
       ->type_name("T");
   command->callback([options, &context] { print_gains(context, *options); });
 }

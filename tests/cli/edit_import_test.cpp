@@ -228,6 +228,11 @@ TEST_F(Edit, ALoopKeepsTheKeysOfAFoot) {
   EXPECT_EQ(json["keys_kept"], true) << out.out;
   EXPECT_EQ(json["check"]["verdict"], "consistent");
   EXPECT_EQ(json["lost"], Json::array()) << "the comments of the kick stay";
+  const Output five = ayumi(
+      {"edit", "loop", "kick.json", "--times", "5", "-o", "five.json", "--json", "-q"});
+  ASSERT_EQ(five.exit_code, 0) << five.out << five.err;
+  EXPECT_NEAR(double(Json::parse(five.out)["duration_s"]), 2.5 * double(json["duration_s"]), 1e-9);
+  EXPECT_EQ(Json::parse(five.out)["check"]["verdict"], "consistent");
   const std::string text = contents(folder / "kicks.json");
   EXPECT_EQ(text.substr(0, text.find('{')),
             contents(folder / "kick.json").substr(0, text.find('{')));

@@ -23,6 +23,30 @@ Output run(const std::vector<std::string>& words) {
   return run_program(words, folder.path());
 }
 
+// An empty number, or one that no double can hold, is no number. A gain has the limits that it has
+// in a pattern.
+TEST(GainsCommand, ValuesOutOfRangeAreRefused) {
+  const std::pair<std::string, std::string> cases[] = {
+      {"ka=", "'ka=' does not have the form NAME=NUMBER"},
+      {"ka=1x", "'ka=1x' does not have the form NAME=NUMBER"},
+      {"=1", "'=1' does not have the form NAME=NUMBER"},
+      {"ka=1e999", "'ka=1e999' is out of range; the number must be from -1e6 to 1e6"},
+      {"q=1e160", "'q=1e160' is out of range; the number must be from -1e6 to 1e6"},
+      {"q=nan", "'q=nan' is out of range"}};
+  for (const auto& [word, message] : cases) {
+    const Output output = run({"gains", "hoap1", "--gain", word});
+    EXPECT_EQ(output.exit_code, 2) << word;
+    EXPECT_NE(output.err.find(message), std::string::npos) << output.err;
+  }
+  const Output output = run({"gains", "hoap1", "--return-time", "1e-300"});
+  EXPECT_EQ(output.exit_code, 2);
+  EXPECT_NE(output.err.find("a gain must be from 0 to 1e+06"), std::string::npos) << output.err;
+  // The largest gains have poles, too, and are called unstable.
+  const Output large = run({"gains", "hoap1", "--gain", "q=1000000", "--gain", "ks=1000000"});
+  EXPECT_NE(large.exit_code, 0) << large.out;
+  EXPECT_NE(large.exit_code, 5) << large.err;
+}
+
 TEST(GainsCommand, PolesGiveKAndD) {
   const Output made = run({"gains", "hoap1", "--time-constants", "0.2,0.5", "--absorb", "0.6",
                            "--return-time", "0.1", "--json"});

@@ -154,6 +154,10 @@ TEST_F(PostureCommand, BadInputIsRefusedAndNothingIsWritten) {
   refused(with_save({"posture", "mirror", "mine.json", "redy"}), 2, "did you mean 'ready'?");
   refused(with_save({"posture", "adjust", "hoap1", "home", "--joint", "l_elbo=1"}), 2,
           "did you mean 'l_elbow'?");
+  refused(with_save({"posture", "adjust", "hoap1", "home", "--joint", "l_elbow=1e308"}), 2,
+          "'l_elbow=1e308' is out of range");
+  refused(with_save({"posture", "adjust", "hoap1", "home", "--joint", "l_elbow="}), 2,
+          "does not have the form NAME=NUMBER");
   refused(with_save({"posture", "list"}), 2, "");
   refused({"posture", "draw", "mine.json", "ready", "-o", "ready.jpg"}, 2, ".png");
   refused({"posture", "adjust", "hoap1", "home", "--joint", "l_elbow=1", "--as", "x", "-o",

@@ -183,8 +183,9 @@ TEST(GainDesign, GainsOutOfRangeAreRefused) {
   const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
   using Gains = std::vector<std::pair<std::string, double>>;
   const std::tuple<ControllerKind, Gains, std::string> cases[] = {
-      {ControllerKind::dtad, {{"q", -1}}, "gain q is -1; a gain must be a finite number that is"},
-      {ControllerKind::dtad, {{"q", NAN}}, "gain q is nan; a gain must be a finite number"},
+      {ControllerKind::dtad, {{"q", -1}}, "gain q is -1; a gain must be from 0 to 1e+06"},
+      {ControllerKind::dtad, {{"q", NAN}}, "gain q is nan; a gain must be from 0 to"},
+      {ControllerKind::dtad, {{"q", 1e160}}, "gain q is 1e+160; a gain must be from 0 to"},
       {ControllerKind::dtad, {{"qq", 1}}, "dtad has no gain 'qq'; did you mean 'q'?"},
       {ControllerKind::dtad, {{"sag", 1}}, " (known: k, d, "},
       {ControllerKind::preview, {{"k", 1}}, "preview has no gain 'k'"},
@@ -236,6 +237,10 @@ TEST(GainDesign, RefusesWishesThatNoGainsFulfil) {
   wishes = {};
   wishes.return_time = 0;
   EXPECT_EQ(refused(wishes), "a return time of 0 is not possible: it must be above 0 s");
+  wishes.return_time = 1e-300;
+  EXPECT_EQ(refused(wishes),
+            "the wishes need a gain that is not possible: gain kd is 1.667e+299; a gain must be "
+            "from 0 to 1e+06");
   wishes = {};
   wishes.zmp_filter = -1;
   EXPECT_EQ(refused(wishes), "a ZMP filter time of -1 is not possible: it must be above 0 s");

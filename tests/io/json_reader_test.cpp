@@ -31,6 +31,13 @@ TEST(JsonReader, NamesLineAndColumnOfASyntaxError) {
             "f.json: the key 'b' appears twice in one object; keep one");
 }
 
+// A file name or a message would end there.
+TEST(JsonReader, TheCharacterZeroIsRefused) {
+  for (const std::string text : {"{\"a\":\n \"b\\u0000c\"}", "{\n  \"a\\u0000\": 1}"})
+    EXPECT_NE(parse_error(text).find("a text has the character U+0000"), std::string::npos) << text;
+  EXPECT_TRUE(parse_error("{\"a\":\n \"b\\u0000c\"}").starts_with("f.json:2:"));
+}
+
 // Typing errors of an author, and the message about each: the line and column where the text must
 // be corrected, and what is missing or too much there.
 TEST(JsonReader, NamesASlipInWordsAboutTheText) {

@@ -69,6 +69,7 @@ TEST(PatternInFewWords, ExpressionsKnowFunctions) {
   EXPECT_NE(fails("sqrt(-1)").find("the result is not a finite number"), std::string::npos);
   EXPECT_NE(fails("sin(1, 2)").find("sin takes one number"), std::string::npos);
   EXPECT_NE(fails("atan2(1)").find("atan2 takes two numbers"), std::string::npos);
+  EXPECT_NE(fails("max(1, 2, 3)").find("max takes two numbers"), std::string::npos);
   EXPECT_NE(fails("sin 1 + pi").find("'(' is missing after sin"), std::string::npos);
   EXPECT_NE(fails("sinn(1)").find("; did you mean 'sin'?"), std::string::npos) << fails("sinn(1)");
   EXPECT_NE(fails("2*stride + pi").find("write a parameter as ${stride}"), std::string::npos);

@@ -5,6 +5,8 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <complex>
+#include <limits>
+#include <optional>
 #include <vector>
 
 namespace ayumi {
@@ -16,14 +18,24 @@ TEST(Eigenvalues, OfACompanionMatrixAreItsRoots) {
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(4, 4);
   A.diagonal(-1).setOnes();
   A.col(3) << 30, -17, 3, 1;
-  const Eigen::VectorXcd found = eigenvalues(A);
-  ASSERT_EQ(found.size(), 4);
+  const std::optional<Eigen::VectorXcd> found = eigenvalues(A);
+  ASSERT_TRUE(found);
+  ASSERT_EQ(found->size(), 4);
   const std::vector<std::complex<double>> roots = {{2, 0}, {-3, 0}, {1, 2}, {1, -2}};
   for (const std::complex<double>& root : roots) {
     double nearest = 1e9;
-    for (const std::complex<double>& value : found)
+    for (const std::complex<double>& value : *found)
       nearest = std::min(nearest, std::abs(value - root));
     EXPECT_LT(nearest, 1e-12) << root.real() << " + " << root.imag() << " i";
+  }
+}
+
+TEST(Eigenvalues, OfAMatrixThatIsNotFiniteAreNotFound) {
+  Eigen::MatrixXd A = Eigen::MatrixXd::Identity(3, 3);
+  for (const double value : {std::numeric_limits<double>::infinity(),
+                             std::numeric_limits<double>::quiet_NaN()}) {
+    A(1, 2) = value;
+    EXPECT_FALSE(eigenvalues(A));
   }
 }
 

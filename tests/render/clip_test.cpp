@@ -225,6 +225,11 @@ TEST_F(Clip, ErrorsSayWhatIsWrongAndLeaveNothing) {
   EXPECT_NE(
       message_of(folder / "a.avi", ErrorCode::usage).find("'.avi' is not possible; give .mp4"),
       std::string::npos);
+  options.speed = 1e-9;
+  EXPECT_NE(message_of(folder / "a.mp4", ErrorCode::usage)
+                .find("the clip would have 2.5e+10 frames, and at most 1e+06 are possible"),
+            std::string::npos);
+  options.speed = 1;
   options.encoder = "no-such-encoder";
   EXPECT_NE(message_of(folder / "a.mp4", ErrorCode::bad_file).find("install ffmpeg"),
             std::string::npos);

@@ -69,9 +69,13 @@ MatrixXd tick_matrix(const LoopModel& loop, const DtadParams& p) {
 }  // namespace
 
 LoopAnalysis analyze_loop(const LoopModel& loop, const DtadParams& params) {
-  const Eigen::VectorXcd values = eigenvalues(tick_matrix(loop, params));
+  const std::optional<Eigen::VectorXcd> values = eigenvalues(tick_matrix(loop, params));
   LoopAnalysis analysis;
-  for (const std::complex<double>& value : values)
+  if (!values) {  // the numbers of the loop are too large: it has no pole that could be computed
+    analysis.decay = -INFINITY;
+    return analysis;
+  }
+  for (const std::complex<double>& value : *values)
     if (std::abs(value) > 1e-9) analysis.poles.push_back(std::log(value) / loop.tick);
   // Without a time constant of the offset, its state is constant and gives no mode.
   if (params.offset_time <= 0)
@@ -79,6 +83,11 @@ LoopAnalysis analyze_loop(const LoopModel& loop, const DtadParams& params) {
   std::sort(analysis.poles.begin(), analysis.poles.end(), [](const auto& a, const auto& b) {
     return a.real() != b.real() ? a.real() > b.real() : a.imag() > b.imag();
   });
+  if (analysis.poles.empty()) {  // every error is gone after one tick
+    analysis.decay = INFINITY;
+    analysis.stable = true;
+    return analysis;
+  }
   analysis.decay = -analysis.poles.front().real();
   analysis.frequency = std::abs(analysis.poles.front().imag()) / (2 * M_PI);
   analysis.stable = analysis.decay > -loop.tolerated_growth;
@@ -130,6 +139,9 @@ DtadParams design_gains(double omega, const GainWishes& wishes, DtadParams param
       refuse("a forgetting time of", *wishes.forget, "it must be at least 0 s");
     params.offset_time = omega * *wishes.forget;
   }
+  for (const auto& [name, value] : gains_of(params))
+    if (const std::string reason = gain_out_of_range(name, value); !reason.empty())
+      fail(ErrorCode::usage, "the wishes need a gain that is not possible: " + reason);
   return params;
 }
 

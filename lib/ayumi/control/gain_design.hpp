@@ -15,7 +15,9 @@
 namespace ayumi {
 
 struct LoopAnalysis {
-  /// Poles of the equivalent continuous loop, the slowest decay first [1/s].
+  /// Poles of the equivalent continuous loop, the slowest decay first [1/s]. Empty if the numbers
+  /// of the loop are too large for a computation (then the decay is -infinity), or if no error
+  /// lasts longer than a tick (infinity).
   std::vector<std::complex<double>> poles;
   bool stable = false;
   double decay = 0;      ///< decay of the slowest mode; negative if it grows [1/s]

@@ -12,8 +12,12 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <optional>
+#include <string>
 #include <utility>
 
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
 #include "ayumi/math/eigenvalues.hpp"
 #include "ayumi/math/riccati.hpp"
 #include "ayumi/model/gravity.hpp"
@@ -43,7 +47,12 @@ PreviewGains preview_gains(double tick, double effort, double horizon) {
   g.state = K.tail<3>();
 
   // Two poles are near -1; the other two are much faster.
-  Eigen::VectorXcd poles = eigenvalues(g.A - g.B * K);
+  const std::optional<Eigen::VectorXcd> found = eigenvalues(g.A - g.B * K);
+  if (!found)
+    fail(ErrorCode::usage, "preview control: no gains can be computed for the effort " +
+                               text::brief(effort) + " and the tick " + text::brief(tick) +
+                               "; choose an effort nearer to the default");
+  Eigen::VectorXcd poles = *found;
   std::sort(poles.begin(), poles.end(),
             [](const auto& a, const auto& b) { return std::norm(a) > std::norm(b); });
   const double sum = (poles[0] + poles[1]).real(), product = (poles[0] * poles[1]).real();

@@ -1,6 +1,7 @@
 #include "ayumi/motion/controller_spec.hpp"
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/largest_number.hpp"
 #include "ayumi/base/text.hpp"
 
 namespace ayumi {
@@ -54,6 +55,12 @@ ControllerType controller_type(const std::string& name) {
   const std::vector<std::string>& names = controller_names();
   fail(ErrorCode::usage, "unknown controller '" + name + "'" + text::suggestion(name, names) +
                              " (known: " + text::join(names, ", ") + ")");
+}
+
+std::string gain_out_of_range(const std::string& name, double value) {
+  if (value >= 0 && value <= kLargestNumber) return {};
+  return "gain " + name + " is " + text::brief(value) + "; a gain must be from 0 to " +
+         text::brief(kLargestNumber);
 }
 
 }  // namespace ayumi

@@ -59,4 +59,7 @@ struct ControllerSpec {
   std::vector<std::pair<std::string, double>> gains;
 };
 
+/// Why a gain of this value is refused, with the limits; empty if it is from 0 to kLargestNumber.
+std::string gain_out_of_range(const std::string& name, double value);
+
 }  // namespace ayumi

@@ -31,6 +31,16 @@ namespace {
 namespace fs = std::filesystem;
 using Eigen::Vector3d;
 
+// Largest number of frames of a clip. Chosen: nine hours at 30 frames per second. More are a slip
+// in the speed or in the frames per second.
+constexpr double kMostFrames = 1e6;
+
+double frames_of(const SimulationLog& log, const ClipOptions& options) {
+  const double end = options.end < 0 ? duration(log) : std::min(options.end, duration(log));
+  const double step = options.speed / options.fps;
+  return std::floor((end - options.begin) / step + 1e-6) + 1;
+}
+
 void check(const RobotModel& model, const SimulationLog& log, const ClipOptions& options) {
   const double last = duration(log);
   const auto need = [](bool good, const std::string& what) {
@@ -59,6 +69,11 @@ void check(const RobotModel& model, const SimulationLog& log, const ClipOptions&
   need(options.end < 0 || options.end >= options.begin,
        "the last time, " + text::exact(options.end) + " s, is before the first time, " +
            text::exact(options.begin) + " s");
+  const double frames = frames_of(log, options);
+  need(frames <= kMostFrames, "the clip would have " + text::brief(frames) +
+                                  " frames, and at most " + text::brief(kMostFrames) +
+                                  " are possible; choose a larger speed or fewer frames per "
+                                  "second");
   const double at = options.at.value_or(0);
   need(at >= 0 && at <= last + 1e-9, "the time of the picture, " + text::exact(at) +
                                          " s, is outside the run (0 to " + text::brief(last) +
@@ -670,9 +685,7 @@ ClipSummary write_clip(const RobotModel& model, const SimulationLog& log, const 
     write_png(path, renderer.frame(at));
     return {1, picture.width, picture.height, options.fps, at, renderer.notes()};
   }
-  const double end = options.end < 0 ? duration(log) : std::min(options.end, duration(log));
-  const double step = options.speed / options.fps;
-  const int count = static_cast<int>(std::floor((end - options.begin) / step + 1e-6)) + 1;
+  const int count = static_cast<int>(frames_of(log, options));
   const auto time = [&](int k) { return options.begin + k * options.speed / options.fps; };
   std::once_flag shaped;
   std::shared_ptr<const ClipShape> shape;  // made by the first thread that needs it

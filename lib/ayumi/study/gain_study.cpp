@@ -4,6 +4,8 @@
 #include <tuple>
 
 #include "ayumi/author/generate/generate.hpp"
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
 #include "ayumi/control/capture_bound.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/plan/sample.hpp"
@@ -64,6 +66,10 @@ std::vector<std::pair<std::string, double>> gain_list(const DtadParams& p) {
 GainStudy study_gains(const RobotModel& model, const GainWishes& wishes,
                       const std::vector<std::pair<std::string, double>>& gains,
                       std::optional<double> latency) {
+  if (latency && !(*latency >= 0 && *latency <= GainStudy::kMostLatency))
+    fail(ErrorCode::usage, "the latency of the sensors is " + text::brief(*latency) +
+                               " s; it must be from 0 to " + text::brief(GainStudy::kMostLatency) +
+                               " s");
   GainStudy d;
   const CommandSample first = sample(model, stand_pattern(model, 0.01)).samples.front();
   const double z = first.cog.z() - first.zmp.z();

@@ -176,9 +176,8 @@ DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
   if (poles) names = {"k", "d"};
   for (const auto& [name, field] : fields) names.push_back(name);
   auto set = [&](const std::string& name, double value, const auto& refuse) {
-    if (!std::isfinite(value) || value < 0)
-      refuse("gain " + name + " is " + text::brief(value) +
-             "; a gain must be a finite number that is not negative");
+    if (const std::string reason = gain_out_of_range(name, value); !reason.empty())
+      refuse(reason);
     if (poles && name == "k")
       p.k = value;
     else if (poles && name == "d")

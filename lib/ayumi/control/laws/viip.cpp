@@ -161,9 +161,8 @@ ViipParams viip_params(const RobotModel& model, const ControllerSpec& spec) {
   std::vector<std::string> names;
   for (const auto& [name, field] : fields) names.push_back(name);
   auto set = [&](const std::string& name, double value, const auto& refuse) {
-    if (!std::isfinite(value) || value < 0)
-      refuse("gain " + name + " is " + text::brief(value) +
-             "; a gain must be a finite number that is not negative");
+    if (const std::string reason = gain_out_of_range(name, value); !reason.empty())
+      refuse(reason);
     const auto found = fields.find(name);
     if (found == fields.end())
       refuse("viip has no gain '" + name + "'" + text::suggestion(name, names) +

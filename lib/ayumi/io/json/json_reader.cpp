@@ -57,11 +57,13 @@ std::string reason_of(const std::string& message) {
 
 // Builds a document in a time that is linear in the length of its text. The library's own parser
 // with a callback would visit all members of an object again after each of them. Stops at a value
-// that is nested too deeply, and remembers the first key that is given twice.
+// that is nested too deeply and at a text with the character U+0000, and remembers the first key
+// that is given twice.
 class DocumentBuilder : public nlohmann::json_sax<Json> {
  public:
   explicit DocumentBuilder(Json& root) : root_(root) {}
   bool too_deep() const { return too_deep_; }
+  bool has_zero() const { return has_zero_; }
   const std::string& duplicate() const { return duplicate_; }
 
   bool null() override { return place(nullptr); }
@@ -69,13 +71,14 @@ class DocumentBuilder : public nlohmann::json_sax<Json> {
   bool number_integer(number_integer_t value) override { return place(value); }
   bool number_unsigned(number_unsigned_t value) override { return place(value); }
   bool number_float(number_float_t value, const string_t&) override { return place(value); }
-  bool string(string_t& value) override { return place(std::move(value)); }
+  bool string(string_t& value) override { return has_no_zero(value) && place(std::move(value)); }
   bool binary(binary_t& value) override { return place(std::move(value)); }
   bool start_object(std::size_t) override { return open(Json::object()); }
   bool start_array(std::size_t) override { return open(Json::array()); }
   bool end_object() override { return close(); }
   bool end_array() override { return close(); }
   bool key(string_t& name) override {
+    if (!has_no_zero(name)) return false;
     const auto [member, fresh] = open_.back()->get_ref<Json::object_t&>().emplace(name, nullptr);
     if (!fresh && duplicate_.empty()) duplicate_ = name;
     member_ = &member->second;
@@ -92,6 +95,10 @@ class DocumentBuilder : public nlohmann::json_sax<Json> {
   bool place(Value&& value) {
     put(std::forward<Value>(value));
     return true;
+  }
+  bool has_no_zero(const std::string& text) {
+    has_zero_ = text.find('\0') != std::string::npos;
+    return !has_zero_;
   }
   bool open(Json&& empty) {
     too_deep_ = open_.size() >= static_cast<size_t>(kDeepestNesting);
@@ -117,6 +124,7 @@ class DocumentBuilder : public nlohmann::json_sax<Json> {
   std::vector<Json*> open_;  // arrays and objects that are not yet complete
   Json* member_ = nullptr;   // the value that belongs to the last key of the innermost object
   bool too_deep_ = false;
+  bool has_zero_ = false;
   std::string duplicate_;
 };
 
@@ -156,6 +164,10 @@ Json parse_json(const std::string& bytes, const std::string& file, ErrorCode cod
     fail_in_text(code, file, bytes, nested_too_deep(bytes).value_or(bytes.size()),
                  "arrays and objects are nested more than " + std::to_string(kDeepestNesting) +
                      " levels deep; correct the brackets");
+  if (builder.has_zero())
+    fail_in_text(code, file, bytes, bytes.find("\\u0000"),
+                 "a text has the character U+0000, which would end a file name or a message; "
+                 "remove it");
   if (!builder.duplicate().empty())
     fail(code, {file},
          "the key '" + builder.duplicate() + "' appears twice in one object; keep one");

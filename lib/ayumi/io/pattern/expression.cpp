@@ -152,12 +152,15 @@ class Parser {
     if (found == functions().end()) stop(unknown_function(name));
     const Function& function = found->second;
     if (!take('(')) stop("'(' is missing after " + name);
+    const std::string takes =
+        name + (function.arguments == 1 ? " takes one number"
+                                        : " takes two numbers, as in \"" + name + "(1, 2)\"");
     std::array<double, 2> value = {};
     for (size_t i = 0; i < function.arguments; ++i) {
-      if (i > 0 && !take(',')) stop(name + " takes two numbers, as in \"" + name + "(1, 2)\"");
+      if (i > 0 && !take(',')) stop(takes);
       value[i] = sum();
     }
-    if (take(',')) stop(name + " takes one number");
+    if (take(',')) stop(takes);
     if (!take(')')) stop("')' is missing");
     return function.value(value[0], value[1]);
   }

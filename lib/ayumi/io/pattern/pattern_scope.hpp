@@ -5,14 +5,13 @@
 #include <optional>
 #include <set>
 
+#include "ayumi/base/largest_number.hpp"
 #include "ayumi/io/degrees.hpp"
 #include "ayumi/io/json/json_reader.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
 
 namespace ayumi {
 
-/// Largest number. Source: docs/formats.md; a larger one is a mistake.
-inline constexpr double kLargestNumber = 1e6;
 /// Longest pattern [s]. Source: docs/formats.md.
 inline constexpr double kLongestPattern = 3600;
 
