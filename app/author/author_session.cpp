@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cstring>
+#include <system_error>
 
 #include "author/author_pose.hpp"
 #include "ayumi/base/error.hpp"
@@ -509,12 +510,17 @@ AuthorAnswer AuthorSession::start_job(const OrderedJson& request) {
       return refused("the text of the pattern has an error; correct it first");
     if (job_runs_) return refused("another job is running; wait for it or cancel it");
     if (worker_.joinable()) worker_.join();
-    job_runs_ = true;
     job_stops_ = false;
     const std::uint64_t id = ++job_;
-    worker_ =
-        std::thread([this, id, kind, options = request.value("options", OrderedJson::object()),
-                     shown] { work(id, kind, options, shown); });
+    job_runs_ = true;
+    try {
+      worker_ =
+          std::thread([this, id, kind, options = request.value("options", OrderedJson::object()),
+                       shown] { work(id, kind, options, shown); });
+    } catch (const std::system_error&) {  // too many threads run on this machine
+      job_runs_ = false;
+      return refused("the job could not be started; close other programs and try again");
+    }
     return {200, {{"id", std::to_string(id)}}};
   });
 }

@@ -84,6 +84,7 @@ TEST_F(PatternSchema, SchemaAndReaderAgree) {
                                            "unknown parameter",
                                            "write a parameter as",
                                            "no such file",
+                                           "but a file is needed",
                                            "the vector has no direction",
                                            "the velocity must be at most 10 m/s",
                                            "a point needs a link",

@@ -290,6 +290,7 @@ inline const std::vector<Broken>& mistakes() {
        "${name}"},
       {"table", "\"absent.csv\"", "absent.csv: no such file"},
       {"include", "\"absent.json\"", "absent.json: no such file"},
+      {"include", "\".\"", "this is a folder, but a file is needed"},
       {"correction", R"({"begin": 0, "spacing": 0, "columns": [], "coefficients": []})",
        "/correction/spacing: this value must be above 0"},
       {"correction", R"({"begin": 0, "spacing": 1, "columns": ["base.x[m]"], "coefficients": []})",

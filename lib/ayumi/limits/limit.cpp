@@ -1,9 +1,9 @@
 #include "ayumi/limits/limit.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/largest_number.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/limits/limit_table.hpp"
 #include "ayumi/model/gravity.hpp"
@@ -82,9 +82,10 @@ Tolerances tolerances(const CheckOptions& options) {
       fail(ErrorCode::usage, "there is no kind of finding '" + name +
                                  "'; `ayumi check --tolerances` lists the kinds" +
                                  text::suggestion(name, finding_kind_names()));
-    if (!std::isfinite(value))
-      fail(ErrorCode::usage,
-           "tolerance '" + name + "': " + text::exact(value) + " is not a finite number");
+    if (!(value >= 0 && value <= kLargestNumber))
+      fail(ErrorCode::usage, "tolerance '" + name + "': " + text::exact(value) +
+                                 " is out of range; a tolerance must be from 0 to " +
+                                 text::brief(kLargestNumber));
     result[*kind] = value;
   }
   return result;

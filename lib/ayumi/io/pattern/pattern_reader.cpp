@@ -92,6 +92,10 @@ fs::path named_file(const JsonNode& name, const fs::path& folder) {
   fs::path path = folder / name.string();
   std::error_code ignored;
   if (!fs::exists(path, ignored)) name.complain(path.string() + ": no such file");
+  if (!fs::is_regular_file(path, ignored))
+    name.complain(path.string() + ": this is a " +
+                  (fs::is_directory(path, ignored) ? "folder" : "device or a named pipe") +
+                  ", but a file is needed");
   return path;
 }
 
