@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <sstream>
 #include <system_error>
 
@@ -65,6 +66,17 @@ ValueCheck one_of(const std::vector<std::string>& words) {
            text::suggestion(word, words);
   };
   return {complaint, "{" + text::join(words, ",") + "}", kOneOf + text::join(words, "|")};
+}
+
+ValueCheck file_or_subcommand(const std::vector<std::string>& subcommands) {
+  const auto complaint = [subcommands](const std::string& word) -> std::string {
+    std::error_code ignored;
+    if (word.find_first_of("./") != std::string::npos || std::filesystem::exists(word, ignored))
+      return "";
+    return "'" + word + "' is neither a file nor a subcommand; the subcommands are " +
+           text::join(subcommands, ", ") + text::suggestion(word, subcommands);
+  };
+  return {complaint, ""};
 }
 
 std::vector<std::string> choices_of(const CLI::Option& option) {

@@ -20,6 +20,10 @@ ValueCheck seed_number();
 
 /// Accepts one of these words. The message of CLI::IsMember would have braces.
 ValueCheck one_of(const std::vector<std::string>& words);
+/// Accepts the name of a file, of a command that also has these subcommands. A single word without
+/// a dot that names no file is refused, because it is a mistyped subcommand.
+ValueCheck file_or_subcommand(const std::vector<std::string>& subcommands);
+
 /// The words of the one_of() that checks the option; empty if it has no such check.
 std::vector<std::string> choices_of(const CLI::Option& option);
 

@@ -32,9 +32,6 @@ void add_simulation_options(Command& command, SimulationChoice& choice) {
   command.add_option("--gain", choice.gains, "Set a gain of the controller.")
       ->type_name("GAIN=VALUE")
       ->allow_extra_args(false);
-  command.add_flag(
-      "--noise", choice.noise,
-      "Simulate noise, bias and latency of the sensors as the sidecar describes them.");
   command.add_flag("--true-state", choice.true_state,
                    "Give the controller the true state in place of the estimate.");
   command.add_option("--substeps", choice.substeps, "Number of integrator steps per servo period.")
@@ -42,6 +39,12 @@ void add_simulation_options(Command& command, SimulationChoice& choice) {
       ->type_name("N");
   add_unstable_flag(command, choice.unstable);
   add_plant_option(command, choice.plant);
+}
+
+void add_noise_flag(Command& command, bool& noise) {
+  command.add_flag(
+      "--noise", noise,
+      "Simulate noise, bias and latency of the sensors as the sidecar describes them.");
 }
 
 void add_unstable_flag(Command& command, bool& allowed) {

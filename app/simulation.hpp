@@ -21,6 +21,9 @@ struct SimulationChoice {
 };
 void add_simulation_options(Command& command, SimulationChoice& choice);
 
+/// Adds the option --noise.
+void add_noise_flag(Command& command, bool& noise);
+
 /// Adds the option --plant NAME.
 void add_plant_option(Command& command, std::string& plant);
 /// Throws Error(usage) for a plant without which this program was built.

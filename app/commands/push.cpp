@@ -285,8 +285,7 @@ void add_push(Command& app, Context& context) {
       ->check(number_within(0.001, 1.0).description(""))
       ->type_name("T")
       ->capture_default_str();
-  command->add_flag("--noise", push.simulate.sensor_noise,
-                    "Simulate noise, bias and latency of the sensors.");
+  add_noise_flag(*command, push.simulate.sensor_noise);
   command
       ->add_option("--substeps", push.simulate.substeps,
                    "Number of integrator steps per servo period.")

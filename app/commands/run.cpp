@@ -428,6 +428,7 @@ void add_run(Command& app, Context& context) {
                     "Print every finding. Without this option, the answer fits on a screen.");
   add_pattern_options(*command, options->input);
   add_simulation_options(*command, options->choice);
+  add_noise_flag(*command, options->choice.noise);
   command->callback([options, &context] { run_patterns(context, *options); });
 }
 

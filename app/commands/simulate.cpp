@@ -132,6 +132,7 @@ void add_simulate(Command& app, Context& context) {
   command->add_option("-o,--out", options->out, "Folder for the run.")->type_name("DIR");
   add_pattern_options(*command, options->input);
   add_simulation_options(*command, options->choice);
+  add_noise_flag(*command, options->choice.noise);
   command
       ->add_option("--case", options->number,
                    "Simulate the case of `ayumi certify` that has this number.")

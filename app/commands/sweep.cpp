@@ -314,7 +314,8 @@ void add_sweep(Command& app, Context& context) {
       "Run again with the same -o to continue: only the cases without a result are run. "
       "Exit code 1: an expectation is not met, or a case could not be run.");
   auto options = std::make_shared<SweepCommand>();
-  command->add_option("STUDY", options->study, "Study file that has the key \"sweep\".");
+  command->add_option("STUDY", options->study, "Study file that has the key \"sweep\".")
+      ->check(file_or_subcommand({"merge", "status"}));
   command->add_option("-o,--out", options->out, "File for the results (SQLite).")
       ->type_name("F.db");
   command

@@ -159,8 +159,7 @@ void add_tune(Command& app, Context& context) {
       ->check(whole_number_within(1, 50).description(""))
       ->capture_default_str()
       ->type_name("N");
-  command->add_flag("--noise", t.simulate.sensor_noise,
-                    "Simulate noise, bias and latency of the sensors.");
+  add_noise_flag(*command, t.simulate.sensor_noise);
   command->callback([options, &context] { tune(context, *options); });
 }
 

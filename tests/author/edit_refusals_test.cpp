@@ -190,6 +190,16 @@ TEST(KeyEdit, TheImageOfAPostureHasItsJoints) {
   EXPECT_EQ(edited.postures, p.postures);
 }
 
+// Another posture of the pattern that is not symmetric does not matter.
+TEST(KeyEdit, ASymmetricPostureKeepsItsName) {
+  Pattern p = stand_pattern(hoap1(), 1.0);
+  p.postures["wave"] = {{"l_shoulder_pitch", 0.3}};
+  p.keyframes.at(0).posture = "home";
+  const Pattern edited = with_key_edited(hoap1(), p, {.at = 0, .mirror = true});
+  EXPECT_EQ(edited.keyframes.at(0).posture, "home");
+  EXPECT_TRUE(edited.keyframes.at(0).joints.empty());
+}
+
 TEST(CutRefuses, SamplesThatAreNotThere) {
   const RobotModel& model = hoap1();
   const Pattern step = step_once();

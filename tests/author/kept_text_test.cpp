@@ -7,6 +7,7 @@
 #include "ayumi/io/pattern/pattern_rewrite.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "tests/support/hoap1.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace ayumi::test {
 namespace {
@@ -89,6 +90,43 @@ TEST(KeptText, TheMirrorImageExchangesNamesAndSigns) {
                              "\"foot\": \"left\", \"to\": [\"${stride}*2\", 0.039] } },\n\n"),
             std::string::npos)
       << result.text;
+}
+
+// The postures of a library stay as they are, because other patterns include it, too. Where a
+// posture is used that is not symmetric, the pattern names the one that is its image, or gets it.
+TEST(KeptText, TheMirrorImageKeepsPostureLibraries) {
+  const TemporaryFolder folder;
+  folder.write("lib.json", R"({"format": "ayumi.postures/1", "units": {"angle": "deg"},
+    "postures": {"point_left": {"l_shoulder_pitch": -60}, "point_right": {"r_shoulder_pitch": -60},
+                 "lean": {"l_elbow": -20, "r_elbow": -40}, "up": {"l_elbow": -9, "r_elbow": -9}}})");
+  const auto text = [](const std::string& uses, const std::string& rest) {
+    return R"({ "format": "ayumi.pattern/1", "robot": "hoap1", "units": {"angle": "deg"},
+  "include": "lib.json", // of the show
+  "phases": [ { "until": 4, "support": "both" } ],
+  "keyframes": [ {"t": 0.5, "zmp": "center"},
+    {"t": 1, )" +
+           uses + R"( }, // raised
+    {"t": 2, "joints": {"l_elbow": -10}} ])" +
+           rest + "\n}\n";
+  };
+  const auto mirrored_text = [&](const std::string& given) {
+    const Pattern before = pattern_of_text(given, folder.path() / "a.json");
+    const auto result =
+        rewritten(given, before, mirrored(hoap1(), before), {.out = folder.path() / "b.json"});
+    return result ? result->text : "the text is not kept";
+  };
+  const auto expect_image = [&](const std::string& uses, const std::string& image,
+                                const std::string& added = "") {
+    const std::string expected =
+        changed(text(image, added), {{"\"l_elbow\": -10}", "\"r_elbow\": -10}"}});
+    EXPECT_EQ(mirrored_text(text(uses, "")), expected);
+    EXPECT_EQ(mirrored_text(expected), text(uses, ""));  // and back again
+  };
+  expect_image(R"("zmp": "left")", R"("zmp": "right")");
+  expect_image(R"("posture": "up")", R"("posture": "up")");
+  expect_image(R"("posture": "point_left")", R"("posture": "point_right")");
+  expect_image(R"("posture": "lean")", R"("posture": "lean_mirrored")",
+               ",\n  \"postures\": {\"lean_mirrored\": {\"l_elbow\": -40, \"r_elbow\": -20}}");
 }
 
 // Words that name a side stay as they are when a motion is mirrored: those of comments, and the

@@ -734,6 +734,19 @@ TEST(PlantedMistakes, AllThatIsNamedForAHopIsEnough) {
   EXPECT_TRUE(is_consistent(pattern, options)) << found;
 }
 
+// The stoop is too low. The range of its height begins with the smaller value, although the larger
+// one is nearer to the height that the COG would have without the key.
+TEST(PlantedMistakes, ARangeBeginsWithItsSmallerEnd) {
+  const Pattern pattern =
+      hop_with({{0.5, 0.245}, {1.2, 0.17}, {1.5, 0.22}, {1.65, 0.22}, {1.85, 0.17}, {2.8, 0.245}});
+  const std::string found = texts_of(likely_mistakes(small(), pattern, strong_options(pattern)));
+  const std::regex range("with values from ([0-9.]+) m to ([0-9.]+) m");
+  int ranges = 0;
+  for (std::sregex_iterator it(found.begin(), found.end(), range), end; it != end; ++it, ++ranges)
+    EXPECT_LT(std::stod((*it)[1]), std::stod((*it)[2])) << found;
+  EXPECT_GT(ranges, 0) << found;
+}
+
 // The named change of a hop passes quick trials, but cannot be sampled at the servo's period.
 TEST(PlantedMistakes, AChangeThatCannotBeSampledIsNotNamed) {
   Pattern pattern = hop_with(

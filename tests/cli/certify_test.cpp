@@ -191,6 +191,7 @@ TEST(CertifyCommand, ComparesLawsAndRefusesBadInput) {
             std::string::npos)
       << other.err;
   EXPECT_EQ(study.certify({"--shard", "3/2", "-o", "x.json"}).exit_code, 2);
+  EXPECT_EQ(study.certify({"--noise"}).exit_code, 2) << "sensors always have noise";
   EXPECT_EQ(study.run({"simulate", "stand.json", "--study", "study.json"}).exit_code, 2);
   write(study.folder / "bad.json", R"({"format": "ayumi.study/1", "uncertainty": {"quantities": [
     {"what": "mass", "normal": [0.1, 1], "source": "assumed: test"}]}})");

@@ -28,6 +28,8 @@ MeshShape box_mesh(const Vector3d& half, const Isometry3d& in_mesh) {
   return mesh;
 }
 
+Collider hull_of(const MeshShape& mesh) { return {Shape{mesh}, MeshHull(mesh.mesh)}; }
+
 MeshShape octahedron(float reach) {
   MeshShape mesh;
   mesh.mesh.parts.resize(1);
@@ -50,6 +52,31 @@ TEST(MeshHull, FacesOfSolids) {
   const auto faces = hull_faces(outer_vertices(octahedron(0.1f).mesh));
   ASSERT_EQ(faces.size(), 8u);
   for (const HullFace& face : faces) EXPECT_EQ(face.corners.size(), 3u);
+}
+
+// The vertices of a large mesh are those that are farthest out in 90 directions, whatever their
+// order in the file.
+TEST(MeshHull, OuterVerticesOfALargeMesh) {
+  Random random(7);
+  for (const int count : {100, 3000, 9000}) {
+    TriangleMesh mesh;
+    mesh.parts.resize(2);
+    for (int i = 0; i < count; ++i)
+      mesh.parts[i % 2].vertices.push_back(random.vector(0.1).cast<float>());
+    std::set<std::array<double, 3>> expected, found;
+    for (int i = 0; i < 90; ++i) {
+      const double z = 1 - (2 * i + 1.0) / 90, turn = M_PI * (3 - std::sqrt(5.0)) * i;
+      const double r = std::sqrt(1 - z * z);
+      const Vector3d out(r * std::cos(turn), r * std::sin(turn), z);
+      Vector3d best = mesh.parts[0].vertices[0].cast<double>();
+      for (const MeshPart& part : mesh.parts)
+        for (const Eigen::Vector3f& v : part.vertices)
+          if (v.cast<double>().dot(out) > best.dot(out)) best = v.cast<double>();
+      expected.insert({best.x(), best.y(), best.z()});
+    }
+    for (const Vector3d& v : outer_vertices(mesh)) found.insert({v.x(), v.y(), v.z()});
+    EXPECT_EQ(found, expected);
+  }
 }
 
 // For any points, each face has all of them on one side, its corners turn left as seen from
@@ -83,7 +110,7 @@ TEST(MeshHull, DistanceIsThatOfTheShapeAndNotOfItsBox) {
     const Vector3d half(0.03, 0.05, 0.02);
     const Isometry3d askew = random_pose(random, 0.1), pose = random_pose(random, 0.15);
     const Isometry3d pose_b = random_pose(random, 0.15);
-    const Collider mesh(Shape{box_mesh(half, askew)}, MeshAs::hull);
+    const Collider mesh = hull_of(box_mesh(half, askew));
     const Collider box(Shape{Box{2 * half}}), other(Shape{Cylinder{0.02, 0.06}});
     const double expected = clearance(box, pose * askew, other, pose_b);
     EXPECT_NEAR(clearance(mesh, pose, other, pose_b), expected, 1e-7);
@@ -103,7 +130,7 @@ TEST(MeshHull, PatchIsThatOfTheShape) {
     Isometry3d pose = Isometry3d::Identity();
     pose.translation() << 0.02 * random.vector().head<2>(), 0.0701;
     pose.linear() = exp_rotation({0, 0, random.vector().z()}).toRotationMatrix();
-    const Collider mesh(Shape{box_mesh(half, askew)}, MeshAs::hull);
+    const Collider mesh = hull_of(box_mesh(half, askew));
     const Collider box(Shape{Box{2 * half}});
     const Isometry3d at = Isometry3d::Identity();
     const ContactPatch expected = contact_patch(table, at, box, pose, 1e-3);

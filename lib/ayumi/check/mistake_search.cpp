@@ -288,8 +288,9 @@ class Search {
     const bool tiny = std::abs(number.value - limit) < kLeastMistake * value.unit(model_);
     if (tiny && !at_limit.good()) return;
     const double from = number.neutral + least * (number.value - number.neutral);
+    const auto [smaller, larger] = std::minmax({from, limit});
     const std::string range =
-        (least > 0 ? "from " + value.text(pattern_, from) + " to " + value.text(pattern_, limit)
+        (least > 0 ? "from " + value.text(pattern_, smaller) + " to " + value.text(pattern_, larger)
                    : up_to) +
         value.elsewhere();
     tried_.push_back({{Rank::amount,

@@ -72,16 +72,23 @@ std::set<std::pair<int, int>> ignored_pairs(const RobotModel& model) {
 
 CollisionModel::CollisionModel(const RobotModel& model, MeshAs mesh_as)
     : shapes_(model.bodies().size()) {
-  for (const Link& link : model.links())
-    for (const PlacedShape& shape : link.collisions)
-      shapes_[link.body].push_back({Collider(shape.shape, mesh_as), link.pose * shape.pose});
+  for (size_t l = 0; l < model.links().size(); ++l) {
+    const Link& link = model.links()[l];
+    for (size_t i = 0; i < link.collisions.size(); ++i) {
+      const PlacedShape& shape = link.collisions[i];
+      shapes_[link.body].push_back({mesh_as == MeshAs::box
+                                        ? Collider(shape.shape)
+                                        : Collider(shape.shape, model.collision_hulls()[l][i]),
+                                    link.pose * shape.pose});
+    }
+  }
 
   if (model.has_soles())
     for (const Side side : {Side::left, Side::right}) {
       const Sole& sole = model.sole(side);
       if (!shapes_[sole.body].empty()) continue;
       const PlacedShape box = sole_box(sole);
-      shapes_[sole.body].push_back({Collider(box.shape, mesh_as), box.pose});
+      shapes_[sole.body].push_back({Collider(box.shape), box.pose});
     }
 
   RobotData data(model);

@@ -8,6 +8,10 @@
 
 namespace ayumi {
 
+/// What a mesh is replaced by: its bounding box, so that no clearance is overestimated, or, for
+/// contacts, the convex hull of its outer vertices (mesh_hull.hpp).
+enum class MeshAs { box, hull };
+
 /// The collision shapes of a robot, prepared for use, and the pairs of bodies to examine. A foot
 /// without collision shapes has a thin box above its sole, because a sole is solid: the check finds
 /// soles that overlap, and in the simulator such soles push each other. These pairs are left out:

@@ -13,23 +13,6 @@ using Eigen::Vector3d;
 
 namespace {
 
-struct Bounds {
-  Vector3d low = Vector3d::Constant(std::numeric_limits<double>::infinity());
-  Vector3d high = -low;
-};
-
-Bounds mesh_bounds(const MeshShape& mesh) {
-  Bounds b;
-  for (const MeshPart& part : mesh.mesh.parts) {
-    for (const Eigen::Vector3f& v : part.vertices) {
-      b.low = b.low.cwiseMin(v.cast<double>());
-      b.high = b.high.cwiseMax(v.cast<double>());
-    }
-  }
-  if (!(b.low.x() <= b.high.x())) b.low = b.high = Vector3d::Zero();
-  return b;
-}
-
 struct SegmentPoints {
   Vector3d on_a, on_b;
 };
@@ -71,7 +54,7 @@ double core_extent(const ConvexCore& core, const Isometry3d& pose, const Vector3
 
 }  // namespace
 
-Collider::Collider(const Shape& shape, MeshAs mesh_as) {
+Collider::Collider(const Shape& shape) {
   if (const auto* sphere = std::get_if<Sphere>(&shape)) {
     swept_ = true;
     rounding_ = radius_ = sphere->radius;
@@ -88,23 +71,19 @@ Collider::Collider(const Shape& shape, MeshAs mesh_as) {
     core_.disc = cylinder->radius;
     radius_ = elementary::hypot(cylinder->radius, 0.5 * cylinder->length);
   } else {
-    const Bounds bounds = mesh_bounds(std::get<MeshShape>(shape));
-    core_.half = 0.5 * (bounds.high - bounds.low);
-    center_ = 0.5 * (bounds.low + bounds.high);
+    const Eigen::AlignedBox3d box_around = bounding_box(std::get<MeshShape>(shape).mesh);
+    core_.half = 0.5 * box_around.sizes();
+    center_ = box_around.center();
     radius_ = core_.half.norm();
-    if (mesh_as == MeshAs::hull) take_hull(std::get<MeshShape>(shape));
   }
 }
 
-// A flat mesh has no faces and keeps its bounding box.
-void Collider::take_hull(const MeshShape& mesh) {
-  std::vector<Vector3d> points = outer_vertices(mesh.mesh);
-  for (Vector3d& p : points) p -= center_;
-  faces_ = hull_faces(points);
-  if (faces_.empty()) return;
+Collider::Collider(const Shape& shape, const MeshHull& hull) : Collider(shape) {
+  if (!std::holds_alternative<MeshShape>(shape) || hull.faces.empty()) return;
+  faces_ = hull.faces;
+  core_.points = hull.points;
   radius_ = 0;
-  for (const Vector3d& p : points) radius_ = std::max(radius_, p.norm());
-  core_.points = std::move(points);
+  for (const Vector3d& p : core_.points) radius_ = std::max(radius_, p.norm());
 }
 
 Closest closest(const Collider& a, const Isometry3d& pose_a, const Collider& b,

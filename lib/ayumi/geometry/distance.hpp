@@ -21,12 +21,13 @@ struct Closest {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit vector from a to b
 };
 
-enum class MeshAs { box, hull };
-
 /// A shape prepared for distance queries: all points within `rounding` of a convex core.
 class Collider {
  public:
-  explicit Collider(const Shape& shape, MeshAs mesh_as = MeshAs::box);
+  /// A mesh is its bounding box.
+  explicit Collider(const Shape& shape);
+  /// A mesh is its convex hull. A flat mesh, whose hull has no faces, is its bounding box.
+  Collider(const Shape& shape, const MeshHull& hull);
 
   /// The bounding sphere in the shape's frame [m]. Its centre is the origin of the core's frame.
   const Eigen::Vector3d& center() const { return center_; }
@@ -44,8 +45,6 @@ class Collider {
   }
 
  private:
-  void take_hull(const MeshShape& mesh);
-
   ConvexCore core_;
   std::vector<HullFace> faces_;
   double rounding_ = 0, radius_ = 0;

@@ -21,6 +21,9 @@ constexpr size_t kManyVertices = 4096;
 /// Number of directions in which the vertices of a larger mesh are chosen. Chosen: they are about
 /// 21 deg apart, so that the hull is at most 4 % of its radius inside a sphere (1 - cos 16 deg).
 constexpr int kDirections = 90;
+/// Number of consecutive vertices that are passed over together if they cannot be farthest out.
+/// Chosen: neighbours in a file mostly are neighbours in space.
+constexpr size_t kBlock = 32;
 /// Distance from a plane below which points count as being in it, relative to the points' extent.
 /// Chosen: above the rounding of single precision, in which mesh files store vertices.
 constexpr double kCoplanar = 1e-6;
@@ -29,6 +32,43 @@ constexpr double kCoplanar = 1e-6;
 constexpr double kSurely = 1.01;
 /// Largest number of corners of a face. Definition: the number that contact_patch() can handle.
 constexpr size_t kFaceCorners = 16;
+
+double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+/// Whether the line through two points certainly runs through the inside of the hull: every plane
+/// that contains the line has a point more than `flat` on each of its sides, so no face of the hull
+/// has both points. Along the line, three points are searched for whose triangle surrounds it.
+bool surely_inside(const std::vector<Vector3d>& points, const Vector3d& origin,
+                   const Vector3d& edge, double flat) {
+  const double length = edge.norm();
+  if (!(length > 0)) return false;
+  const Vector3d along = edge / length, x = along.unitOrthogonal(), y = along.cross(x);
+  const auto surrounds = [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    const double area = cross(a, b);  // the distance of the side from the line, times its length
+    return area > 0 && area * area > kSurely * flat * flat * (b - a).squaredNorm();
+  };
+  // The rightmost and the leftmost point so far; they are less than half a turn apart.
+  Eigen::Vector2d right = Eigen::Vector2d::Zero(), left = right;
+  for (const Vector3d& p : points) {
+    const Vector3d d = p - origin;
+    const Eigen::Vector2d w(x.dot(d), y.dot(d));
+    if (w.squaredNorm() <= 4 * flat * flat) continue;
+    if (right.isZero(0)) {
+      right = left = w;
+      continue;
+    }
+    const double from_right = cross(right, w), from_left = cross(left, w);
+    if (from_right > 0 && from_left > 0)
+      left = w;
+    else if (from_right < 0 && from_left < 0)
+      right = w;
+    else if (surrounds(right, left) && surrounds(left, w) && surrounds(w, right))
+      return true;
+  }
+  return false;
+}
 
 /// The corners of the convex polygon of points in a plane, anticlockwise about the normal.
 std::vector<Vector3d> outline(const std::vector<Vector3d>& points, const Vector3d& normal) {
@@ -61,6 +101,14 @@ std::vector<Vector3d> outline(const std::vector<Vector3d>& points, const Vector3
 
 }  // namespace
 
+Eigen::AlignedBox3d bounding_box(const TriangleMesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const MeshPart& part : mesh.parts)
+    for (const Eigen::Vector3f& v : part.vertices) box.extend(v.cast<double>());
+  if (!(box.min().x() <= box.max().x())) return {Vector3d::Zero(), Vector3d::Zero()};
+  return box;
+}
+
 std::vector<Vector3d> outer_vertices(const TriangleMesh& mesh) {
   std::vector<Vector3d> all, result;
   for (const MeshPart& part : mesh.parts)
@@ -74,17 +122,25 @@ std::vector<Vector3d> outer_vertices(const TriangleMesh& mesh) {
   };
   if (all.size() <= kManyVertices) sort_out(all);
   if (all.size() <= kMeshPoints) return all;
+  std::vector<Eigen::AlignedBox3d> blocks((all.size() + kBlock - 1) / kBlock);
+  for (size_t k = 0; k < all.size(); ++k) blocks[k / kBlock].extend(all[k]);
   for (int i = 0; i < kDirections; ++i) {  // a spiral from pole to pole
     const double z = 1 - (2 * i + 1.0) / kDirections, turn = M_PI * (3 - std::sqrt(5.0)) * i;
     const double r = std::sqrt(1 - z * z);
     const Vector3d out(r * elementary::cos(turn), r * elementary::sin(turn), z);
     size_t farthest = 0;
     double most = all[0].dot(out);
-    for (size_t k = 1; k < all.size(); ++k) {
-      const double distance = all[k].dot(out);
-      if (!(most < distance)) continue;
-      most = distance;
-      farthest = k;
+    for (size_t b = 0; b < blocks.size(); ++b) {
+      // No vertex of the block is farther out than this corner. Rounding does not change this,
+      // because products and sums are monotonic.
+      const Vector3d corner = (out.array() > 0).select(blocks[b].max(), blocks[b].min());
+      if (corner.dot(out) <= most) continue;
+      for (size_t k = b * kBlock; k < std::min((b + 1) * kBlock, all.size()); ++k) {
+        const double distance = all[k].dot(out);
+        if (!(most < distance)) continue;
+        most = distance;
+        farthest = k;
+      }
     }
     result.push_back(all[farthest]);
   }
@@ -126,7 +182,8 @@ std::vector<HullFace> hull_faces(const std::vector<Vector3d>& points) {
     return distance > 0 && distance * distance > kSurely * flat * flat * square;
   };
   for (size_t i = 0; i < points.size(); ++i)
-    for (size_t j = i + 1; j < points.size(); ++j)
+    for (size_t j = i + 1; j < points.size(); ++j) {
+      if (surely_inside(points, points[i], points[j] - points[i], flat)) continue;
       for (size_t k = j + 1; k < points.size(); ++k) {
         const Vector3d u = points[j] - points[i], v = points[k] - points[i], n = u.cross(v);
         const double square = n.squaredNorm();
@@ -136,7 +193,14 @@ std::vector<HullFace> hull_faces(const std::vector<Vector3d>& points) {
         if (!above) take(points[i], n.normalized(), outer[0]);
         if (!below) take(points[i], -n.normalized(), outer[1]);
       }
+    }
   return faces;
+}
+
+MeshHull::MeshHull(const TriangleMesh& mesh)
+    : center(bounding_box(mesh).center()), vertices(outer_vertices(mesh)), points(vertices) {
+  for (Vector3d& p : points) p -= center;
+  faces = hull_faces(points);
 }
 
 }  // namespace ayumi

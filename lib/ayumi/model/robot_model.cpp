@@ -322,6 +322,19 @@ RobotModel::RobotModel(RobotDescription description) : description_(std::move(de
   require_servos_that_fit(*this);
 }
 
+const std::vector<std::vector<MeshHull>>& RobotModel::collision_hulls() const {
+  std::call_once(hulls_->computed, [this] {
+    for (const Link& link : links_) {
+      std::vector<MeshHull>& hulls = hulls_->of_links.emplace_back();
+      for (const PlacedShape& placed : link.collisions) {
+        const auto* mesh = std::get_if<MeshShape>(&placed.shape);
+        hulls.push_back(mesh ? MeshHull(mesh->mesh) : MeshHull());
+      }
+    }
+  });
+  return hulls_->of_links;
+}
+
 std::vector<std::string> RobotModel::dof_names() const {
   std::vector<std::string> names;
   for (const Dof& dof : dofs_) names.push_back(dof.name);

@@ -4,9 +4,12 @@
 // Bodies are sorted parents first. A mimic joint moves its body with the dof of another joint.
 
 #include <Eigen/Geometry>
+#include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
+#include "ayumi/geometry/mesh_hull.hpp"
 #include "ayumi/geometry/shape.hpp"
 #include "ayumi/model/robot_description.hpp"
 #include "ayumi/model/robot_state.hpp"
@@ -93,6 +96,9 @@ class RobotModel {
   const std::vector<Body>& bodies() const { return bodies_; }
   const std::vector<Dof>& dofs() const { return dofs_; }
   const std::vector<Link>& links() const { return links_; }
+  /// Hulls of the collision meshes, by link and collision shape, without points for other shapes.
+  /// They are computed at the first call, for all copies of the model.
+  const std::vector<std::vector<MeshHull>>& collision_hulls() const;
   int dof_count() const { return static_cast<int>(dofs_.size()); }
   int velocity_count() const { return 6 + dof_count(); }
   std::vector<std::string> dof_names() const;
@@ -132,6 +138,12 @@ class RobotModel {
   std::vector<ActuatorLimits> limits_;
   double mass_ = 0;
   int trunk_body_ = 0;
+
+  struct Hulls {
+    std::once_flag computed;
+    std::vector<std::vector<MeshHull>> of_links;
+  };
+  std::shared_ptr<Hulls> hulls_ = std::make_shared<Hulls>();
 };
 
 }  // namespace ayumi

@@ -45,6 +45,14 @@ void put_key(std::vector<Keyframe>& keys, const Keyframe& key) {
       key);
 }
 
+// Whether a posture of this name is the same in two patterns for one robot.
+bool has_same_posture(const Pattern& a, const Pattern& b, const std::string& name) {
+  const auto in_a = a.postures.find(name), in_b = b.postures.find(name);
+  if (in_a == a.postures.end() || in_b == b.postures.end())
+    return in_a == a.postures.end() && in_b == b.postures.end();
+  return in_a->second == in_b->second;
+}
+
 }  // namespace
 
 Pattern with_key_edited(const RobotModel& model, const Pattern& pattern, const KeyEdit& edit) {
@@ -65,7 +73,7 @@ Pattern with_key_edited(const RobotModel& model, const Pattern& pattern, const K
     key = alone.keyframes.front();
     // The mirror image of a posture that is not symmetric is not the posture of this name, so its
     // angles are written instead.
-    if (key.posture && alone.postures != pattern.postures) {
+    if (key.posture && !has_same_posture(alone, pattern, *key.posture)) {
       const auto angles = posture_joints(model, alone, *key.posture, key.place);
       key.posture.reset();
       for (const auto& [joint, angle] : angles) key.joints.emplace(joint, angle);
@@ -212,7 +220,7 @@ Pattern alternated(const RobotModel& model, const Pattern& pattern, int times, b
     for (Keyframe key : next.keyframes) {
       key.pointer.clear();
       key.t = round_time(key.t + k * length);
-      if (key.posture && odd && image.postures != relative.postures) {
+      if (key.posture && odd && !has_same_posture(image, relative, *key.posture)) {
         for (const auto& [joint, angle] : posture_joints(model, image, *key.posture, key.place))
           key.joints.emplace(joint, angle);
         key.posture.reset();

@@ -2,7 +2,7 @@
 // a joint about a has its image about -M a; moments and other axial vectors n -> -M n.
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <string_view>
 
 #include "ayumi/author/edit/edit.hpp"
 #include "ayumi/base/error.hpp"
@@ -23,6 +23,8 @@ constexpr double kAlike = 0.005;
 /// Smallest cosine of the angle between an axis and the mirror image of its counterpart; the value
 /// is the cosine of 8 deg.
 constexpr double kParallel = 0.99;
+/// What the name of an included posture ends with when the pattern gets its image.
+constexpr std::string_view kImageEnding = "_mirrored";
 
 Vector3d image(const Vector3d& p) { return {p.x(), -p.y(), p.z()}; }
 Vector3d axial_image(const Vector3d& v) { return {-v.x(), v.y(), -v.z()}; }
@@ -105,12 +107,7 @@ class Mirror {
 
   Pattern whole() {
     Pattern result = pattern_;
-    for (auto& [name, joints] : result.postures)
-      joints = of(joints, "/postures/" + json_pointer_token(name));
-    std::set<std::string> named = {pattern_.default_posture};
-    for (const Keyframe& key : pattern_.keyframes)
-      if (key.posture) named.insert(*key.posture);
-    for (const std::string& name : named) mirror_robot_posture(result, name);
+    mirror_postures(result);
     result.start_feet = of(pattern_.start_feet);
     for (Phase& phase : result.phases) mirror(phase);
     for (Keyframe& key : result.keyframes) mirror(key);
@@ -147,6 +144,53 @@ class Mirror {
       joint = model_.dofs()[map_.dof[dof_of(joint, "/repair/lock/joints")]].name;
     result.weights = of(preferences.weights, "/repair/weights", false);
     return result;
+  }
+
+  bool is_included(const std::string& posture) const {
+    return pattern_.posture_files.contains(posture);
+  }
+
+  // The postures of the pattern itself get the angles of their images. Those of a posture library
+  // stay, because other patterns include it, too; where one of them is used, the posture that is
+  // its image is named in its place.
+  void mirror_postures(Pattern& result) const {
+    for (auto& [name, joints] : result.postures)
+      if (!is_included(name)) joints = of(joints, "/postures/" + json_pointer_token(name));
+    std::map<std::string, std::string> images;
+    const auto mirror_use = [&](std::string& name) {
+      const auto [image, is_new] = images.emplace(name, "");
+      if (is_new) image->second = image_of_used(result, name);
+      name = image->second;
+    };
+    mirror_use(result.default_posture);
+    for (Keyframe& key : result.keyframes)
+      if (key.posture) mirror_use(*key.posture);
+  }
+
+  // The name of the image of a posture that the pattern uses.
+  std::string image_of_used(Pattern& result, const std::string& name) const {
+    if (is_included(name)) return image_of_included(result, name);
+    mirror_robot_posture(result, name);
+    // An image of an included posture that was made by mirroring is this posture again.
+    const auto own = result.postures.find(name);
+    if (own == result.postures.end() || !name.ends_with(kImageEnding)) return name;
+    const std::string origin = name.substr(0, name.size() - kImageEnding.size());
+    if (!is_included(origin) || pattern_.postures.at(origin) != own->second) return name;
+    result.postures.erase(own);
+    return origin;
+  }
+
+  // The included posture with the angles of the image, or else a new posture of the pattern.
+  std::string image_of_included(Pattern& result, const std::string& name) const {
+    const Joints& given = pattern_.postures.at(name);
+    const Joints twin = of(given, "/postures/" + json_pointer_token(name));
+    if (twin == given) return name;
+    for (const auto& [other, joints] : pattern_.postures)
+      if (is_included(other) && joints == twin) return other;
+    std::string fresh = name + std::string(kImageEnding);
+    while (result.postures.contains(fresh)) fresh += kImageEnding;
+    result.postures[fresh] = twin;
+    return fresh;
   }
 
   // A posture of the robot that is not symmetric gets its image in the pattern under the same name.

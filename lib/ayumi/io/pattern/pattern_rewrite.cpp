@@ -162,7 +162,8 @@ class Rewrite {
 
   // The text with the changes, or nothing if it cannot express them.
   std::optional<std::string> between(const Pattern& before, const Pattern& after) {
-    Ordered a = canonical(before), b = canonical(after);
+    Ordered a = canonical(without_included(before, before));
+    Ordered b = canonical(without_included(after, before));
     const Items phases_a = items(a, "phases", "until", before.phases);
     const Items phases_b = items(b, "phases", "until", after.phases);
     const Items keys_a = items(a, "keyframes", "t", before.keyframes);
@@ -177,6 +178,16 @@ class Rewrite {
 
   void replace(const std::string& pointer, const std::string& words) {
     if (const auto at = find_value(text_, pointer)) replace(at->begin, at->end, words);
+  }
+
+  // The pattern without the postures that `before` includes from other files.
+  static Pattern without_included(Pattern pattern, const Pattern& before) {
+    for (const auto& [name, file] : before.posture_files) {
+      const auto own = pattern.postures.find(name);
+      if (own != pattern.postures.end() && own->second == before.postures.at(name))
+        pattern.postures.erase(own);
+    }
+    return pattern;
   }
 
   static Ordered canonical(const Pattern& pattern) {

@@ -6,7 +6,6 @@
 
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/geometry/box_corner.hpp"
-#include "ayumi/geometry/mesh_hull.hpp"
 #include "ayumi/math/elementary.hpp"
 #include "ayumi/math/polygon.hpp"
 #include "ayumi/model/foot_bodies.hpp"
@@ -24,8 +23,9 @@ namespace {
 /// less than 5 %.
 constexpr double kStaticSink = 1e-7;
 
-/// Points of a collision shape that may touch the ground, in the frame of the link.
-std::vector<ContactPoint> touch_points(const PlacedShape& placed) {
+/// Points of a collision shape that may touch the ground, in the frame of the link. `hull` is that
+/// of a mesh.
+std::vector<ContactPoint> touch_points(const PlacedShape& placed, const MeshHull& hull) {
   std::vector<ContactPoint> points;
   const auto add = [&](const Vector3d& p, double radius) {
     points.push_back({.position = placed.pose * p, .radius = radius});
@@ -48,8 +48,8 @@ std::vector<ContactPoint> touch_points(const PlacedShape& placed) {
       points.back().rim = cylinder->radius;
       points.back().axis = placed.pose.linear().col(2);
     }
-  } else if (const auto* mesh = std::get_if<MeshShape>(&placed.shape)) {
-    for (const Vector3d& vertex : outer_vertices(mesh->mesh)) add(vertex, 0);
+  } else {
+    for (const Vector3d& vertex : hull.vertices) add(vertex, 0);
   }
   return points;
 }
@@ -105,10 +105,11 @@ std::vector<ContactPoint> contact_points(const RobotModel& model) {
   }
   std::optional<ShieldedByFoot> shielded;
   if (model.has_soles()) shielded.emplace(model);
-  for (const Link& link : model.links()) {
+  for (size_t l = 0; l < model.links().size(); ++l) {
+    const Link& link = model.links()[l];
     if (is_of_foot(model, link.body)) continue;
-    for (const PlacedShape& shape : link.collisions) {
-      for (ContactPoint point : touch_points(shape)) {
+    for (size_t i = 0; i < link.collisions.size(); ++i) {
+      for (ContactPoint point : touch_points(link.collisions[i], model.collision_hulls()[l][i])) {
         point.body = link.body;
         point.position = link.pose * point.position;
         if (shielded && (*shielded)(link.body, point.position)) continue;
