@@ -7,6 +7,8 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
+#include "ayumi/io/robot/urdf.hpp"
+#include "tests/support/robot_texts.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/urdf_biped.hpp"
 
@@ -185,6 +187,21 @@ TEST(RobotVariants, FixedJointsMayStateLimitsWithoutEffort) {
   const size_t effort = text.find(" effort=", joint);
   text.erase(effort, text.find("/>", effort) - effort);
   EXPECT_EQ(message_of(folder.write("r.urdf", text)), "no error");
+}
+
+// Whatever the file is called: the content decides.
+TEST(RobotVariants, OnlyReadersOfUrdfIgnoreTheMassOfTheRoot) {
+  const TemporaryFolder folder;
+  const std::string biped = test::UrdfBiped{}.text();
+  for (const char* const name : {"r.urdf", "r.xml", "r.sdf"})
+    EXPECT_TRUE(says(load_robot_description(folder.write(name, biped).string()),
+                     "some URDF readers ignore it"))
+        << name;
+  const std::string sdf = test::sdf_text_of(RobotModel(parse_urdf(biped, "r.urdf", {})));
+  for (const char* const name : {"s.sdf", "s.xml"})
+    EXPECT_FALSE(says(load_robot_description(folder.write(name, sdf).string()),
+                      "some URDF readers ignore it"))
+        << name;
 }
 
 TEST(RobotVariants, JointsWithoutMassAreHeld) {

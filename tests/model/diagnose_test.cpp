@@ -47,19 +47,6 @@ TEST(Diagnose, FindsNothingWrongWithHoap1) {
   EXPECT_EQ(findings([](auto&) {}), "");
 }
 
-// Only readers of URDF ignore the mass of the root link.
-TEST(Diagnose, TheMassOfTheRootMattersInUrdfOnly) {
-  const auto of = [](const std::string& file) {
-    return findings([&](RobotDescription& robot) {
-      robot.sidecar_file.clear();
-      robot.urdf_file = file;
-    });
-  };
-  EXPECT_NE(of("robot.URDF").find("the root link carries"), std::string::npos);
-  for (const char* const file : {"robot.xml", "robot.sdf", "robot.body", "robot.ZTK"})
-    EXPECT_EQ(of(file).find("the root link carries"), std::string::npos) << file;
-}
-
 TEST(Diagnose, NamesImplausibleInertias) {
   EXPECT_TRUE(mentions(
       findings([](auto& r) { link(r, "l_shank").inertia.about_com = Eigen::Matrix3d::Identity(); }),
@@ -79,12 +66,6 @@ TEST(Diagnose, NamesImplausibleInertias) {
                        "links r_shank, r_foot, l_shank, l_foot", "the same inertia tensor"));
   EXPECT_TRUE(mentions(findings([](auto& r) { link(r, "l_foot").inertia.mass = 10; }),
                        "link l_foot", "above that of lead"));
-}
-
-// Without a sidecar, the mass of the root is a common mistake.
-TEST(Diagnose, NamesTheMassOfTheRoot) {
-  EXPECT_TRUE(mentions(findings([](auto& r) { r.sidecar_file.clear(); }), "link torso",
-                       "some URDF readers ignore it"));
 }
 
 TEST(Diagnose, NamesShapesThatDoNotFitTheRobot) {

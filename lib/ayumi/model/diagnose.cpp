@@ -6,7 +6,6 @@
 #include "ayumi/model/diagnose.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -62,7 +61,6 @@ class Doctor {
   }
 
   std::vector<ModelWarning> examine() {
-    examine_root();
     for (const Link& link : model_.links()) examine_link(link);
     examine_equal_tensors();
     examine_collisions();
@@ -122,25 +120,6 @@ class Doctor {
       warnings.push_back({each.kind, named ? where : each.kind, each.message + detail});
     }
     return warnings;
-  }
-
-  // Only readers of URDF ignore the mass of the root link.
-  bool is_read_as_urdf() const {
-    const std::string& file = model_.description().urdf_file;
-    const size_t point = file.rfind('.');
-    std::string extension = point == std::string::npos ? "" : file.substr(point);
-    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return extension != ".xml" && extension != ".mjcf" && extension != ".sdf" &&
-           extension != ".body" && extension != ".ztk";
-  }
-
-  void examine_root() {
-    const Link& root = model_.links().front();
-    if (root.inertia.mass > 0 && model_.description().sidecar_file.empty() && is_read_as_urdf())
-      warn("link", root.name,
-           "the root link carries " + text::brief(root.inertia.mass) +
-               " kg; Ayumi counts this mass, but some URDF readers ignore it and compute a smaller "
-               "total mass");
   }
 
   void examine_link(const Link& link) {

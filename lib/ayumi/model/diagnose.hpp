@@ -16,10 +16,9 @@ struct ModelWarning {
 
 /// One warning for each cause, which names all links or joints that have it, or the first few and
 /// their number. Tests for: inertia that is implausible for mass and size (triangle inequality,
-/// placeholders, equal tensors on many links), mass on the root link that URDF readers drop,
-/// missing limits, effort or speed that are placeholders, left-right asymmetry of masses, lengths
-/// and limits (partners are found by their places, not by their names), soles not level at the home
-/// posture, a COG outside the soles, sign conflicts of encoders between left and right, joints
+/// placeholders, equal tensors on many links), missing limits, effort or speed that are
+/// placeholders, left-right asymmetry of masses, lengths and limits (partners are found by their
+/// places, not by their names), soles not level at the home posture, a COG outside the soles, sign conflicts of encoders between left and right, joints
 /// without servo or encoder, missing collision shapes, meshes far larger than the robot.
 std::vector<ModelWarning> diagnose(const RobotModel& model);
 

@@ -95,6 +95,20 @@ void fill_meshes(RobotDescription& robot, bool visuals, const Progress& progress
   for (const auto& [shape, request] : wanted) shape->mesh = meshes[request];
 }
 
+// Some readers of URDF ignore the mass of the root link; readers of the other formats do not.
+void note_mass_of_root(RobotDescription& robot) {
+  for (const LinkDescription& link : robot.links) {
+    const bool is_root =
+        std::none_of(robot.joints.begin(), robot.joints.end(),
+                     [&](const JointDescription& joint) { return joint.child == link.name; });
+    if (is_root && link.inertia.mass > 0)
+      robot.assumptions.push_back("the mass of the root link " + link.name + " (" +
+                                  text::brief(link.inertia.mass) +
+                                  " kg) counts; some URDF readers ignore it and compute a smaller "
+                                  "total mass");
+  }
+}
+
 }  // namespace
 
 std::vector<RobotEntry> find_robots(const RobotSearch& search) {
@@ -116,11 +130,13 @@ RobotDescription load_robot_description(const std::string& name_or_path, const R
     fail(ErrorCode::bad_file, "robot '': a name, folder, sidecar or robot file is needed");
   const fs::path file = find_file(name_or_path, search);
   const std::string bytes = read_file(file);
-  const bool sidecar = robot_format(bytes, file) == RobotFormat::sidecar;
+  const RobotFormat format = robot_format(bytes, file);
+  const bool sidecar = format == RobotFormat::sidecar;
   const auto find = [&](const std::string& name) { return find_file(name, search); };
   RobotDescription robot = sidecar ? read_sidecar(file, search.folders, search.packages, find)
                                    : parse_robot(bytes, file, search.packages);
   fill_meshes(robot, options.meshes, options.progress);
+  if (format == RobotFormat::urdf) note_mass_of_root(robot);
   std::error_code ignored;
   if (!sidecar && fs::is_regular_file(file.parent_path() / kSidecarName, ignored))
     robot.assumptions.push_back("the " + std::string(kSidecarName) +
