@@ -106,18 +106,19 @@ Dial height_dial(const RobotModel& model, double given,
   return height_dial(starting_height(model), given, shares);
 }
 
-// The values of the dials with which the robot can do the motion, or the defaults if there are
-// none. Prints what was changed and what limits the robot. `used` are the values that the motion
-// really has, if it does not take all values of the dials as they are.
-std::vector<double> values_that_pass(
-    const Context& context, const RobotModel& model, const std::vector<Dial>& dials,
-    const std::function<Pattern(const std::vector<double>&)>& make, bool simulated = false,
-    const std::function<std::vector<double>(std::vector<double>)>& used = std::identity()) {
-  std::vector<double> defaults;
-  for (const Dial& each : dials) defaults.push_back(each.values.front());
-  if (!model.has_soles()) return defaults;
-  const SearchResult result = search_motion(model, dials, make, context.progress(), simulated);
-  if (result.limit.empty()) return defaults;
+using UsedValues = std::function<std::vector<double>(std::vector<double>)>;
+
+// The values of a finished search, or the defaults if there are none. Prints what was changed and
+// what limits the robot. `used` are the values that the motion really has, if it does not take all
+// values of the dials as they are.
+std::vector<double> values_of(const Context& context, const RobotModel& model,
+                              const std::vector<Dial>& dials, const SearchResult& result,
+                              const UsedValues& used = std::identity()) {
+  if (result.limit.empty()) {
+    std::vector<double> defaults;
+    for (const Dial& each : dials) defaults.push_back(each.values.front());
+    return defaults;
+  }
   const std::string changed = changed_values(dials, used(result.values));
   if (!result.falls.empty())
     context.print("the check accepts this motion" + (changed.empty() ? "" : " with " + changed) +
@@ -143,6 +144,18 @@ std::vector<double> values_that_pass(
     }
   }
   return result.values;
+}
+
+// The values of the dials with which the robot can do the motion, or the defaults if there are
+// none.
+std::vector<double> values_that_pass(const Context& context, const RobotModel& model,
+                                     const std::vector<Dial>& dials,
+                                     const std::function<Pattern(const std::vector<double>&)>& make,
+                                     bool simulated = false,
+                                     const UsedValues& used = std::identity()) {
+  SearchResult result;
+  if (model.has_soles()) result = search_motion(model, dials, make, context.progress(), simulated);
+  return values_of(context, model, dials, result, used);
 }
 
 // A dial of a walk, and the parameter that it sets.
@@ -656,8 +669,11 @@ void new_stand(Context& context, const NewOptions& options) {
            : "The robot stands on both feet with bent knees, lower than in the home posture."});
 }
 
+bool passes(const SearchResult& result) { return result.found || result.limit.empty(); }
+
 // Reduces the amplitudes, and bends the knees of the robot more, until the check finds the pattern
-// consistent.
+// consistent. If no values pass, leaves out the parts of the motion that the robot cannot do even
+// alone.
 void new_excite(Context& context, const NewOptions& options) {
   const RobotModel model = load_robot(options.file.robot, robot_search(context));
   const double given = rounded(100 * options.scale, 1e-3);  // the scale as the value of a dial [%]
@@ -667,15 +683,51 @@ void new_excite(Context& context, const NewOptions& options) {
   const Dial height{
       "a COG height of", "of the usual one",
       options.low > 0 ? std::vector{options.low / usual} : std::vector{1.0, 0.96, 0.92}, true};
-  const auto make = [&](const std::vector<double>& values) {
-    return excite_pattern(model, 0.01 * values[1], values[0]);
+  const std::vector<Dial> dials = {height, amplitudes};
+  const auto make = [&](const std::vector<double>& values, const std::vector<ExcitePart>& parts) {
+    return excite_pattern(model, 0.01 * values[1], values[0], parts);
   };
-  const std::vector<double> values = values_that_pass(context, model, {height, amplitudes}, make);
-  write_new_pattern(
-      context, model, make(values), options.file,
-      {"Slow sweeps, chirps and steps of every joint, for `ayumi identify`. Joints of a leg "
-       "are moved while the robot stands on one foot.",
-       "The amplitudes are " + text::brief(values[1], 3) + " % of the usual ones."});
+  const auto search = [&](const std::vector<ExcitePart>& parts) {
+    const auto of_parts = [&](const std::vector<double>& values) { return make(values, parts); };
+    return model.has_soles() ? search_motion(model, dials, of_parts, context.progress())
+                             : SearchResult{};
+  };
+  std::vector<ExcitePart> parts = excite_parts();
+  SearchResult result = search(parts);
+  std::string left_out;
+  if (!passes(result) && !options.file.allow_inconsistent) {
+    std::vector<ExcitePart> possible;
+    for (const ExcitePart part : parts) {
+      const SearchResult alone = search({part});
+      if (passes(alone)) {
+        possible.push_back(part);
+        continue;
+      }
+      const std::string limit = alone.nearest.empty() ? alone.limit : alone.nearest;
+      left_out += "  left out, because the robot cannot do it with any of these values: " +
+                  std::string(name_of(part)) + "; its limit is " + limit + "\n";
+    }
+    SearchResult rest;
+    rest.limit = result.limit;
+    if (!possible.empty() && possible != parts) rest = search(possible);
+    if (passes(rest)) {
+      parts = possible;
+      result = rest;
+    } else {
+      left_out.clear();
+    }
+  }
+  const std::vector<double> values = values_of(context, model, dials, result);
+  context.print(left_out);
+  std::vector<std::string> comments = {
+      "Slow sweeps, chirps and steps of every joint, for `ayumi identify`. Joints of a leg "
+      "are moved while the robot stands on one foot.",
+      "The amplitudes are " + text::brief(values[1], 3) + " % of the usual ones."};
+  for (const ExcitePart part : excite_parts())
+    if (std::find(parts.begin(), parts.end(), part) == parts.end())
+      comments.push_back(
+          "Left out, because this robot cannot do it: " + std::string(name_of(part)) + ".");
+  write_new_pattern(context, model, make(values, parts), options.file, comments);
 }
 
 // Adds an option that several generators share.

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 
 #include "ayumi/author/generate/generate.hpp"
@@ -72,6 +73,25 @@ RecordedMotion recorded_run(const RobotModel& model, const Pattern& pattern) {
 void expect_covers(const ServoEstimate& estimate, double truth, const std::string& what) {
   EXPECT_LE(estimate.lower, truth) << what;
   EXPECT_GE(estimate.upper, truth) << what;
+}
+
+// A robot that cannot do a part of the motion gets the other parts.
+TEST(ExcitePattern, HasOnlyThePartsThatAreAskedFor) {
+  const auto has = [](const Pattern& pattern, const auto& is_in) {
+    return std::any_of(pattern.keyframes.begin(), pattern.keyframes.end(), is_in);
+  };
+  const auto moves_a_foot = [](const Keyframe& key) { return key.feet[0] || key.feet[1]; };
+  const auto moves_an_arm = [](const Keyframe& key) { return key.joints.contains("l_elbow"); };
+  const Pattern arms = excite_pattern(hoap1(), 1, 1, {ExcitePart::other_joints}),
+                squat = excite_pattern(hoap1(), 1, 1, {ExcitePart::squat}),
+                whole = excite_pattern(hoap1());
+  EXPECT_FALSE(has(arms, moves_a_foot));
+  EXPECT_TRUE(has(arms, moves_an_arm));
+  EXPECT_TRUE(has(squat, moves_a_foot));
+  EXPECT_FALSE(has(squat, moves_an_arm));
+  EXPECT_TRUE(has(whole, moves_a_foot) && has(whole, moves_an_arm));
+  for (const Phase& phase : arms.phases) EXPECT_EQ(phase.support, Support::both);
+  EXPECT_TRUE(judge(make_task(arms, hoap1(), "hoap1-strong")).good());
 }
 
 // kp is found to 10 % and the delay to half a millisecond wherever they are called known; every

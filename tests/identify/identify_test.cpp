@@ -181,6 +181,22 @@ TEST(Identify, SaysThatTheRecordingMayBeShifted) {
   EXPECT_THROW(identify(model, motion, strict, "m.csv"), Error);
 }
 
+// Angles that are two rows ahead of their command are accepted, because some recorders number their
+// rows so, but no servo answers before its command.
+TEST(Identify, SaysThatAnglesAreAheadOfTheirCommand) {
+  const SyntheticServo servo = soft();
+  const Eigen::VectorXd theta = simulated_angles(servo, 6, excitation);
+  const RobotModel model(pendulum_robot(servo));
+  RecordedMotion motion = recorded(theta, kNoise, kCount, 1, excitation);
+  const Eigen::MatrixXd old = motion.measured.theta;
+  const double lag = time_shift(model, motion.command, motion.measured, 0);
+  const Eigen::Index early = std::lround(lag / motion.measured.dt) + 2;
+  motion.measured.theta.topRows(old.rows() - early) = old.bottomRows(old.rows() - early);
+  motion.measured.theta.bottomRows(early).rowwise() = old.bottomRows<1>();
+  EXPECT_NE(identify(model, motion, held_root(), "m.csv").caution.find("ms ahead of their command"),
+            std::string::npos);
+}
+
 std::string answer_error(const std::function<void(RecordedMotion&)>& spoil) {
   const SyntheticServo servo = soft();
   static const Eigen::VectorXd theta = simulated_angles(soft(), 6, excitation);

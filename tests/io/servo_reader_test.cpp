@@ -208,6 +208,26 @@ TEST(ServoReader, AKeyBesideABamFileGoesOverIt) {
   EXPECT_EQ(servo.stall_torque, 1.6 * 6 / 2.1);
 }
 
+// Some files of BAM have numbers of one make of servos, such as the bound of a current. They are
+// named, so that nobody takes the simulated servo for the complete one.
+TEST(ServoReader, NamesTheNumbersOfABamFileThatItDoesNotUse) {
+  const TemporaryFolder folder;
+  const auto assumed = [&] {
+    const RobotModel robot = robot_of(folder, servo_sidecar(kBamGroup));
+    const std::vector<std::string>& lines = robot.description().assumptions;
+    return std::count_if(lines.begin(), lines.end(), [](const std::string& line) {
+      return line.starts_with("motor.json: current_limit, max_velocity of this servo have");
+    });
+  };
+  nlohmann::json numbers = bam_numbers("m5");
+  folder.write("motor.json", numbers.dump());
+  EXPECT_EQ(assumed(), 0);
+  numbers["current_limit"] = 1.37;
+  numbers["max_velocity"] = 5.1;
+  folder.write("motor.json", numbers.dump());
+  EXPECT_EQ(assumed(), 1);
+}
+
 // The base is in another folder than the unit, and each has parameter files of its own beside it.
 TEST(ServoReader, ABamFileStandsBesideTheFileThatNamesIt) {
   const TemporaryFolder folder;

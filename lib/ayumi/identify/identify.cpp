@@ -550,6 +550,17 @@ std::string late_answer(const RobotModel& model, const std::vector<IdentifiedJoi
          "same time";
 }
 
+// The caution about angles that are ahead of their commands by one or two rows, which
+// require_answer() accepts. It is empty for other angles.
+std::string early_answer(const RobotModel& model, const RecordedMotion& motion) {
+  const double shift = time_shift(model, motion.command, motion.measured, 0);
+  if (shift >= 0) return "";
+  return "the angles are about " + text::brief(-1000 * shift, 2) +
+         " ms ahead of their command, which is impossible for a servo, so every delay is too "
+         "short: "
+         "make sure that both files begin at the same time";
+}
+
 std::vector<std::string> motor_types(const RobotModel& model) {
   const ActuatorLimits& limits = model.limits();
   std::map<std::vector<double>, std::string> names;
@@ -628,7 +639,8 @@ Identification identify(const RobotModel& model, const RecordedMotion& motion,
       find_sag(recordings[i], result.joints[i]);
     }
   });
-  result.caution = late_answer(model, result.joints);
+  result.caution = early_answer(model, motion);
+  if (result.caution.empty()) result.caution = late_answer(model, result.joints);
   return result;
 }
 

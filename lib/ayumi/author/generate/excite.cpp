@@ -98,13 +98,11 @@ class Motion {
   SetKey set_;
 };
 
-// The motions on one foot. Each of them is short, so that no motor gets hot.
-enum class OnOneFoot { squat, sway_ahead, sway_aside, swing_ahead, swing_aside };
-
 // The robot stands on the foot `side`, and then on both feet again. While the supporting leg makes
 // slow sweeps, the foot in the air makes slow sweeps, too; only this foot makes chirps and steps.
+// Each of these motions is short, so that no motor gets hot.
 void add_stand_on(const RobotModel& model, PatternBuilder& writer, double& t, Side side,
-                  OnOneFoot what, double height, double scale) {
+                  ExcitePart what, double height, double scale) {
   Pattern standing;
   standing.phases.push_back({1, Support::both, {}});
   const FootPlan feet(model, standing);
@@ -140,21 +138,21 @@ void add_stand_on(const RobotModel& model, PatternBuilder& writer, double& t, Si
     half = half.cwiseMin((corner - model.sole(side).center).cwiseAbs());
   const double depth = kDepthShare * scale * squat_defaults(model).depth,
                angle = scale * kFootAngle;
-  const bool ahead = what == OnOneFoot::squat || what == OnOneFoot::swing_ahead;
+  const bool ahead = what == ExcitePart::squat || what == ExcitePart::swing_ahead;
   const Vector3d moved = scale * size * (ahead ? Vector3d(kAhead, 0, kUp) : Vector3d(0, kAside, 0)),
                  turned = angle * (ahead ? Vector3d(0, 1, 0) : Vector3d(1, 0, 1));
   Motion motion(writer, t, [&](Keyframe& key, double u) {
     foot(key, lifted + u * moved, lean + u * turned);
     Vector2d point = center;
-    if (what == OnOneFoot::sway_ahead) point.x() += kSoleShare * scale * half.x() * u;
-    if (what == OnOneFoot::sway_aside) point.y() += kSoleShare * scale * half.y() * u;
+    if (what == ExcitePart::sway_ahead) point.x() += kSoleShare * scale * half.x() * u;
+    if (what == ExcitePart::sway_aside) point.y() += kSoleShare * scale * half.y() * u;
     zmp(key, point);
     // The squat goes only downwards, because the legs may be nearly straight.
     const double down =
-        what == OnOneFoot::squat ? 0.5 * (1 - elementary::cos(M_PI * std::abs(u))) : 0.0;
+        what == ExcitePart::squat ? 0.5 * (1 - elementary::cos(M_PI * std::abs(u))) : 0.0;
     key.cog_height = height - depth * down;
   });
-  if (what == OnOneFoot::swing_ahead || what == OnOneFoot::swing_aside)
+  if (what == ExcitePart::swing_ahead || what == ExcitePart::swing_aside)
     motion.chirp_and_steps();
   else
     motion.sweep();
@@ -186,7 +184,33 @@ std::map<int, std::vector<int>> other_joints(const RobotModel& model) {
 
 }  // namespace
 
-Pattern excite_pattern(const RobotModel& model, double scale, double stature) {
+const std::vector<ExcitePart>& excite_parts() {
+  static const std::vector<ExcitePart> all = {ExcitePart::squat,       ExcitePart::sway_ahead,
+                                              ExcitePart::sway_aside,  ExcitePart::swing_ahead,
+                                              ExcitePart::swing_aside, ExcitePart::other_joints};
+  return all;
+}
+
+const char* name_of(ExcitePart part) {
+  switch (part) {
+    case ExcitePart::squat:
+      return "the squat on one foot";
+    case ExcitePart::sway_ahead:
+      return "the sway forward and back on one foot";
+    case ExcitePart::sway_aside:
+      return "the sway to the sides on one foot";
+    case ExcitePart::swing_ahead:
+      return "the swing of a leg forward and back";
+    case ExcitePart::swing_aside:
+      return "the swing of a leg to the sides";
+    case ExcitePart::other_joints:
+      break;
+  }
+  return "the motion of the joints outside the legs";
+}
+
+Pattern excite_pattern(const RobotModel& model, double scale, double stature,
+                       const std::vector<ExcitePart>& parts) {
   require_range("excite", "scale", scale, 0.01, 2, "");
   Pattern pattern;
   pattern.name = "excitation of every joint";
@@ -198,14 +222,17 @@ Pattern excite_pattern(const RobotModel& model, double scale, double stature) {
     if (stature != 1)
       pattern.cog_height = to_tenth_millimetre(stature * default_cog_height(model, pattern));
     const double height = default_cog_height(model, pattern);
-    for (const OnOneFoot what : {OnOneFoot::squat, OnOneFoot::sway_ahead, OnOneFoot::sway_aside,
-                                 OnOneFoot::swing_ahead, OnOneFoot::swing_aside})
+    for (const ExcitePart part : parts)
       for (const Side side : {Side::left, Side::right})
-        add_stand_on(model, writer, t, side, what, height, scale);
+        if (part != ExcitePart::other_joints)
+          add_stand_on(model, writer, t, side, part, height, scale);
   }
   const Eigen::VectorXd home = model.posture();
   const double margin = kLimitMargin + model.description().soft_limit_margin;
-  for (const auto& [place, joints] : other_joints(model)) {
+  std::map<int, std::vector<int>> others;
+  if (std::find(parts.begin(), parts.end(), ExcitePart::other_joints) != parts.end())
+    others = other_joints(model);
+  for (const auto& [place, joints] : others) {
     struct Range {
       std::string joint;
       double center, half, rest;

@@ -126,11 +126,17 @@ KickParameters kick_defaults(const RobotModel& model);
 double kick_cog_height(const RobotModel& model, double height);
 Pattern kick_pattern(const RobotModel& model, const KickParameters& parameters);
 
+/// Parts of an excitation. In all parts but the last, the robot stands on one foot and then on the
+/// other; in the last, it stands on both feet and moves the joints outside the legs.
+enum class ExcitePart { squat, sway_ahead, sway_aside, swing_ahead, swing_aside, other_joints };
+const std::vector<ExcitePart>& excite_parts();  ///< all parts, in the order of the motion
+const char* name_of(ExcitePart part);           ///< such as "the squat on one foot"
+
 /// Slow sweeps, chirps and steps of every joint within its limits, from which `identify` can
-/// distinguish the constants of the servos. The robot stands on one foot while its legs move, and
-/// on both feet while the other joints move. `scale` is a factor on all amplitudes, `stature` a
+/// distinguish the constants of the servos. `scale` is a factor on all amplitudes, `stature` a
 /// factor on the COG height. Throws the same errors as walk_pattern.
-Pattern excite_pattern(const RobotModel& model, double scale = 1, double stature = 1);
+Pattern excite_pattern(const RobotModel& model, double scale = 1, double stature = 1,
+                       const std::vector<ExcitePart>& parts = excite_parts());
 
 /// A jump has a stoop, lift-off, flight, touchdown and settling; with `times` jumps there is no
 /// rest between them.

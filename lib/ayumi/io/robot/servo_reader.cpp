@@ -1,6 +1,8 @@
 #include "ayumi/io/robot/servo_reader.hpp"
 
+#include <algorithm>
 #include <array>
+#include <filesystem>
 
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
@@ -163,8 +165,45 @@ LoadFriction bam_load(const JsonNode& root, const BamModel& model) {
   return load;
 }
 
-// The zero offset in the file belongs to the test bench, so it is not used.
-Motor read_bam(const JsonNode& node, ServoDescription& servo, std::string& bytes) {
+/// The entries of a file of BAM that Ayumi knows, whether or not the file's model has them. The
+/// zero offset in the file belongs to the test bench, so it is not used.
+bool is_known_of_bam(const std::string& entry) {
+  constexpr std::array<const char*, 15> kEntries = {"model",
+                                                    "actuator",
+                                                    "kt",
+                                                    "R",
+                                                    "armature",
+                                                    "q_offset",
+                                                    "command_delay",
+                                                    "friction_base",
+                                                    "friction_viscous",
+                                                    "friction_stribeck",
+                                                    "dtheta_stribeck",
+                                                    "alpha",
+                                                    "load_friction_base",
+                                                    "load_friction_stribeck",
+                                                    "comment"};
+  const auto is_entry = [&](const char* known) { return entry == known; };
+  return std::any_of(kEntries.begin(), kEntries.end(), is_entry) ||
+         std::any_of(kLoadFields.begin(), kLoadFields.end(),
+                     [&](const LoadField& field) { return entry == field.bam; });
+}
+
+/// A sentence about the entries that are not used, such as the bound of the current; empty if all
+/// are known.
+std::string unused_of_bam(const JsonNode& root, const std::filesystem::path& path) {
+  std::vector<std::string> names;
+  for (const auto& [entry, value] : root.members())
+    if (!is_known_of_bam(entry)) names.push_back(entry);
+  if (names.empty()) return "";
+  return path.filename().string() + ": " + text::join(names, ", ") +
+         (names.size() == 1 ? " of this servo has" : " of this servo have") +
+         " no counterpart in Ayumi, so the simulated servo is without " +
+         (names.size() == 1 ? "it" : "them");
+}
+
+Motor read_bam(const JsonNode& node, ServoDescription& servo, ServoGroups& out,
+               std::string& bytes) {
   const std::filesystem::path path =
       std::filesystem::path(node.file()).parent_path() / node.string();
   std::error_code ignored;
@@ -187,6 +226,8 @@ Motor read_bam(const JsonNode& node, ServoDescription& servo, std::string& bytes
   }
   servo.load = bam_load(root, model);
   if (const auto delay = root.find("command_delay")) servo.delay = within(*delay, kDelay);
+  if (const std::string unused = unused_of_bam(root, path); !unused.empty())
+    out.unused.insert(unused);
   return {positive(root.at("kt"), kTorqueConstant), positive(root.at("R"), kResistance)};
 }
 
@@ -276,7 +317,7 @@ void read_servo_group(const JsonNode& group, const std::vector<std::string>& joi
     ServoDescription& servo = out.servos[joint];
     Motor motor;
     bytes.clear();
-    if (const auto bam = group.find("bam")) motor = read_bam(*bam, servo, bytes);
+    if (const auto bam = group.find("bam")) motor = read_bam(*bam, servo, out, bytes);
     for (const Field& field : fields())
       if (const auto found = group.find(field.key))
         servo.*field.value = field.unit * within(*found, field.bounds);

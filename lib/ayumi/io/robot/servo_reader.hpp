@@ -3,6 +3,7 @@
 // Actuator Models of Rhoban, friction models M1 to M6). See docs/formats.md, "Servos".
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,8 @@ struct ServoGroups {
   std::map<std::string, ServoDescription> servos;
   std::map<std::string, bool> stated;
   std::string files;  ///< bytes of the parameter files that were read, in this order
+  /// Entries of these files that have no counterpart in a servo, one sentence for each file.
+  std::set<std::string> unused;
 };
 
 /// Reads one group into the servos of `joints`; a later group changes the values that it names. A

@@ -127,6 +127,8 @@ std::map<std::string, ServoDescription> read_servos(
   for (const JsonNode& group : node.items())
     read_servo_group(group, group_joints(group, robot), groups);
   files += groups.files;
+  for (const std::string& unused : groups.unused)
+    if (!is_among(robot.assumptions, unused)) robot.assumptions.push_back(unused);
   std::map<std::string, ServoDescription> servos;
   for (const auto& [joint, stated] : groups.stated) servos[joint] = groups.servos[joint];
   for (const auto& [joint, servo] : groups.servos)
