@@ -123,7 +123,8 @@ std::string smooth_words(const RepairResult& result) {
 // What the motion that is made from scratch begins with, and which keys of the COG it misses.
 std::string start_words(const Pattern& pattern, const GeneratedMotion& made) {
   std::string out = "  made from postures for the planned feet, ";
-  out += made.cog == PlannedCog::zmp
+  out += made.least_sway ? "where the COG sways as little as the supports allow"
+         : made.cog == PlannedCog::zmp
              ? "where the COG follows the ZMP in place of its keys between the first and the last"
              : "and the COG as planned";
   if (made.lowered > 0)
@@ -230,6 +231,7 @@ nlohmann::ordered_json start_json(const GeneratedMotion& made) {
   for (const MissedCog& place : made.missed)
     missed.push_back({{"at_s", place.t}, {"off_m", place.off}});
   return {{"cog", made.cog == PlannedCog::zmp ? "zmp" : "keys"},
+          {"least_sway", made.least_sway},
           {"lowered_m", made.lowered},
           {"missed_cog", missed}};
 }
