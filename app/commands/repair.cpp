@@ -123,7 +123,8 @@ std::string smooth_words(const RepairResult& result) {
 // What the motion that is made from scratch begins with, and which keys of the COG it misses.
 std::string start_words(const Pattern& pattern, const GeneratedMotion& made) {
   std::string out = "  the motion was made from postures with the planned feet and ";
-  out += made.cog == PlannedCog::zmp
+  out += made.least_sway ? "a COG that sways as little as the supports allow"
+         : made.cog == PlannedCog::zmp
              ? "a COG that follows the ZMP; of its keys, only the first and the last are used"
              : "the planned COG";
   if (made.lowered > 0)
@@ -230,6 +231,7 @@ nlohmann::ordered_json start_json(const GeneratedMotion& made) {
   for (const MissedCog& place : made.missed)
     missed.push_back({{"at_s", place.t}, {"off_m", place.off}});
   return {{"cog", made.cog == PlannedCog::zmp ? "zmp" : "keys"},
+          {"least_sway", made.least_sway},
           {"lowered_m", made.lowered},
           {"missed_cog", missed}};
 }

@@ -151,7 +151,7 @@ def bump_of_joint(pattern, dice, joint, angle, width):
     return True
 
 
-ARM = re.compile("shoulder|elbow|arm", re.I)
+ARM = re.compile("shoulder|elbow|arm|sfe|saa", re.I)  # SFE, SAA: shoulders of HOAP-2 and HOAP-3
 
 
 def arm_joint(pattern, dice):

@@ -458,7 +458,7 @@ TEST(FromScratch, ACogThatFollowsTheZmpReachesItsLastPlace) {
   zmp.zmp.emplace().place = ZmpKey::Place::left;
   keyed.keyframes.insert(keyed.keyframes.begin(), zmp);
   for (const Pattern& pattern : {lean, keyed}) {
-    const CommandSeries plan = sample_plan(hoap1(), pattern, {}, {}, PlannedCog::zmp);
+    const CommandSeries plan = sample_plan(hoap1(), pattern, {}, {}, {.cog = PlannedCog::zmp});
     EXPECT_NEAR(plan.samples.back().cog.x(), middle.x() + 0.01, 1e-3);
     EXPECT_NEAR(plan.samples.back().cog.y(), middle.y() + 0.02, 1e-3);
   }

@@ -69,6 +69,17 @@ TEST(RoughMotion, RoundedAnglesAreMended) {
   expect_mended(pattern, true);
 }
 
+// A table of angles alone, as robots and other programs record it. The COG, the ZMP and the force
+// of the table are computed from the rough angles, so they must not judge the smooth curves.
+TEST(RoughMotion, RoundedAnglesWithoutOtherColumnsAreMended) {
+  Pattern pattern = walk_table();
+  pattern.table->cog.clear();
+  pattern.table->zmp.clear();
+  pattern.table->fz.clear();
+  for (double& angle : pattern.table->theta.reshaped()) angle = std::round(500 * angle) / 500;
+  expect_mended(pattern, true);
+}
+
 TEST(RoughMotion, WhatIsLockedIsNotSmoothed) {
   RepairOptions options;
   options.locked_joints = {"l_elbow"};

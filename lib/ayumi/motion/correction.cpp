@@ -141,4 +141,13 @@ CommandSeries apply_correction(const RobotModel& model, const CommandSeries& ser
   return result;
 }
 
+CommandSeries apply_smoothing(const RobotModel& model, const CommandSeries& series,
+                              const std::vector<SmoothWindow>& windows) {
+  CorrectionTrack track;
+  track.spacing = series.duration();
+  track.coefficients.setZero(0, 6);
+  track.smooth = windows;
+  return apply_correction(model, series, track);
+}
+
 }  // namespace ayumi

@@ -1,6 +1,8 @@
 #pragma once
 // Correction tracks: smooth changes that are added to a sampled motion. A repair writes them.
 
+#include <vector>
+
 #include "ayumi/model/robot_model.hpp"
 #include "ayumi/motion/command_series.hpp"
 
@@ -22,5 +24,10 @@ SplineWeights correction_weights(const CorrectionTrack& track, double t);
 /// change. Throws Error(bad_pattern) for an unknown joint or a wrong number of columns.
 CommandSeries apply_correction(const RobotModel& model, const CommandSeries& series,
                                const CorrectionTrack& track);
+
+/// The series with smooth curves in these windows, as apply_correction() makes it if nothing else
+/// changes. The windows are in order and do not overlap.
+CommandSeries apply_smoothing(const RobotModel& model, const CommandSeries& series,
+                              const std::vector<SmoothWindow>& windows);
 
 }  // namespace ayumi

@@ -34,7 +34,7 @@ int sample_count(const Pattern& pattern, double duration, double dt) {
 /// How legs and base are computed.
 struct Solving {
   bool plan_alone = false;  ///< from feet and COG, in place of the keys and columns of the legs
-  PlannedCog cog = PlannedCog::keys;
+  PlanLead lead = {};
 };
 
 /// Before the time `forgiven` [s], targets of hands and gaze may be out of reach between keys.
@@ -47,7 +47,8 @@ CommandSeries sample_posture(const RobotModel& model, const Pattern& pattern,
   for (int dof = 0; dof < model.dof_count(); ++dof) solved[dof] = ik.solves(dof);
   PatternTracks tracks = read_tracks(model, pattern, feet, solved);
   if (solving.plan_alone) tracks.joint_driven = false;
-  if (solving.cog == PlannedCog::zmp) lead_by_zmp(feet, tracks);
+  if (solving.lead.zmp) tracks.zmp = solving.lead.zmp;
+  if (solving.lead.cog == PlannedCog::zmp) lead_by_zmp(feet, tracks);
   LinkPlan links(model, pattern, solved);
   links.forgive_before(forgiven);
   const SampleJob job{model,
@@ -97,7 +98,8 @@ void require_soles(const RobotModel& model) {
 }  // namespace
 
 CommandSeries sample_plan(const RobotModel& model, const Pattern& pattern,
-                          const SampleOptions& options, const Progress& progress, PlannedCog cog) {
+                          const SampleOptions& options, const Progress& progress,
+                          const PlanLead& lead) {
   require_soles(model);
   if (has_viip_phases(pattern))
     fail(ErrorCode::bad_pattern, in_file(pattern, "/phases"),
@@ -108,7 +110,7 @@ CommandSeries sample_plan(const RobotModel& model, const Pattern& pattern,
     key.hands.clear();
     key.gaze.reset();
   }
-  return sample_keys(model, plan, options, progress, {.plan_alone = true, .cog = cog});
+  return sample_keys(model, plan, options, progress, {.plan_alone = true, .lead = lead});
 }
 
 CommandSeries sample(const RobotModel& model, const Pattern& pattern, const SampleOptions& options,

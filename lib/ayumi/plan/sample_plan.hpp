@@ -1,6 +1,10 @@
 #pragma once
 // The motion that follows from the plan of a pattern alone.
 
+#include <array>
+#include <optional>
+
+#include "ayumi/math/track.hpp"
 #include "ayumi/plan/sample.hpp"
 
 namespace ayumi {
@@ -12,12 +16,19 @@ enum class PlannedCog {
          ///< give to the COG, or the keys of the ZMP and then, if time is left, this last place
 };
 
+/// What a plan follows in place of what its pattern gives.
+struct PlanLead {
+  PlannedCog cog = PlannedCog::keys;
+  /// The ZMP in the world [m], in place of the ZMP of the phases and of keys.
+  std::optional<std::array<Track, 3>> zmp = {};
+};
+
 /// The motion that inverse kinematics finds for the contacts, the planned feet and the planned COG
 /// of a pattern. Keys and table columns of leg joints, hands and gaze are left out. If the legs
 /// cannot reach the feet, the motion goes smoothly through the nearest postures; so a repair can
 /// start from it. Throws the same errors as sample(), but never because a foot is out of reach.
 CommandSeries sample_plan(const RobotModel& model, const Pattern& pattern,
                           const SampleOptions& options = {}, const Progress& progress = {},
-                          PlannedCog cog = PlannedCog::keys);
+                          const PlanLead& lead = {});
 
 }  // namespace ayumi

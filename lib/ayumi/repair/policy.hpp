@@ -482,6 +482,18 @@ namespace generation {
 /// last height a walk is a crouch that an author would ask for. Test:
 /// FromScratch.LegsThatAreTooShortForThePlanAreHelped.
 inline constexpr double kHeights[] = {0.96, 0.92, 0.88, 0.84, 0.8};
+/// Times over which the ZMP of least sway changes smoothly, in the order in which they are tried
+/// [s]. Measured: with 0.02 s, Unitree H1 follows the ZMP of steps of 0.38 s; with a shorter time,
+/// the COG sways less, but the full model misses the sudden ZMP by several millimetres. Test:
+/// FromScratch.ACogOfLeastSwayForLegsWithoutAnkleRoll.
+inline constexpr double kSwaySmooth[] = {0.02, 0.01};
+/// Time between two values of this ZMP [s]. Chosen: short beside the double support of quick steps
+/// (0.07 s). Test: none.
+inline constexpr double kZmpStep = 0.01;
+/// Distance of this ZMP from the edges of the support, as a share of the largest distance that a
+/// point of a sole has from its edges. Chosen: 2 mm on the sole of Unitree H1, which the difference
+/// between the full model and its commanded ZMP needs. Test: none.
+inline constexpr double kInsideShare = 0.15;
 }  // namespace generation
 
 // ---- motions with jumps or noise

@@ -11,7 +11,7 @@
 #include <algorithm>
 
 #include "ayumi/base/text.hpp"
-#include "ayumi/motion/smooth_motion.hpp"
+#include "ayumi/motion/correction.hpp"
 #include "ayumi/repair/infeasibility_report.hpp"
 #include "ayumi/repair/overlapping_feet.hpp"
 #include "ayumi/repair/repair_rounds.hpp"
@@ -113,7 +113,7 @@ RepairResult repair_to_the_end(RepairState& state) {
 RepairResult repair_smoothed(const RobotModel& model, const CommandSeries& series,
                              const std::vector<SmoothWindow>& windows, const RepairOptions& options,
                              const Progress& progress) {
-  const CommandSeries smooth = smoothed(series, windows);
+  const CommandSeries smooth = apply_smoothing(model, series, windows);
   RepairState state = repair_state(model, smooth, options, progress);
   RepairResult result = repair_to_the_end(state);
   result.correction.smooth = windows;

@@ -6,9 +6,11 @@
 #include <limits>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/dynamics/inverse_kinematics.hpp"
 #include "ayumi/motion/pattern_context.hpp"
 #include "ayumi/motion/repair_preferences.hpp"
 #include "ayumi/repair/infeasibility_report.hpp"
+#include "ayumi/repair/least_sway.hpp"
 
 namespace ayumi {
 
@@ -42,6 +44,7 @@ namespace {
 struct PlanStart {
   CommandSeries series = {};
   PlannedCog cog = PlannedCog::keys;
+  bool least_sway = false;
   double lowered = 0;  // [m]
   double violation = 0;
 };
@@ -61,6 +64,12 @@ bool has_only_goals(const Pattern& pattern, double dt) {
   };
   const bool rows = pattern.table && !(pattern.table->cog.empty() && pattern.table->zmp.empty());
   return !rows && std::none_of(pattern.keyframes.begin(), pattern.keyframes.end(), on_the_way);
+}
+
+bool has_zmp_keys(const Pattern& pattern) {
+  return (pattern.table && !pattern.table->zmp.empty()) ||
+         std::any_of(pattern.keyframes.begin(), pattern.keyframes.end(),
+                     [](const Keyframe& key) { return key.zmp.has_value(); });
 }
 
 // The starts of a plan, and what they are judged by.
@@ -87,15 +96,17 @@ class PlanStarts {
   }
 
   // The start with the smallest violation; `best` if none is better.
-  PlanStart better_than(PlanStart best, PlannedCog cog) const {
+  PlanStart better_than(PlanStart best, const PlanLead& lead) const {
+    const bool as_planned = lead.cog == PlannedCog::keys && !lead.zmp;
     for (const double share : shares_) {
       if (best.violation == 0) break;
-      if (share == 1 && cog == PlannedCog::keys) continue;  // this is the plan itself
-      PlanStart here = {.cog = cog, .lowered = (1 - share) * height_};
+      if (share == 1 && as_planned) continue;  // this is the plan itself
+      PlanStart here = {
+          .cog = lead.cog, .least_sway = lead.zmp.has_value(), .lowered = (1 - share) * height_};
       try {
         Pattern lower = pattern_;
         if (share < 1) lower.cog_height = share * height_;
-        here.series = sample_plan(model_, lower, sampling_, progress_, cog);
+        here.series = sample_plan(model_, lower, sampling_, progress_, lead);
       } catch (const Error& error) {  // only this start is impossible
         if (error.code() != ErrorCode::bad_pattern) throw;
         continue;
@@ -158,21 +169,32 @@ GeneratedMotion generate(const RobotModel& model, const Pattern& pattern, const 
       made.repair.status = RepairStatus::repaired;
     made.start = std::move(start.series);
     made.cog = start.cog;
+    made.least_sway = start.least_sway;
     made.lowered = start.lowered;
     made.missed = missed_places(model, pattern, made.repair.series, options.check);
     return made;
   };
   PlanStart start = {.series = plan, .violation = starts.violation_of(plan)};
-  start = starts.better_than(std::move(start), PlannedCog::keys);
+  start = starts.better_than(std::move(start), {});
   const bool may_lead = has_key(pattern, &Keyframe::cog_x) || has_key(pattern, &Keyframe::cog_y);
   const bool only_goals = has_only_goals(pattern, plan.dt);
-  if (may_lead && only_goals) start = starts.better_than(std::move(start), PlannedCog::zmp);
+  if (may_lead && only_goals)
+    start = starts.better_than(std::move(start), {.cog = PlannedCog::zmp});
+  const PlannedCog follows = may_lead ? PlannedCog::zmp : PlannedCog::keys;
+  const bool lacks_joints =
+      InverseKinematics(model, default_posture(model, pattern)).lacks_joints();
+  if (lacks_joints && only_goals && !has_zmp_keys(pattern))
+    for (const double smooth : policy::generation::kSwaySmooth) {
+      if (start.violation == 0) break;
+      const auto zmp = zmp_of_least_sway(model, plan, smooth, progress);
+      if (zmp) start = starts.better_than(std::move(start), {.cog = follows, .zmp = zmp});
+    }
   GeneratedMotion made = made_from(std::move(start));
   if (made.repair.status == RepairStatus::repaired || made.repair.partial || !may_lead ||
       only_goals)
     return made;
-  PlanStart led =
-      starts.better_than({.violation = std::numeric_limits<double>::infinity()}, PlannedCog::zmp);
+  PlanStart led = starts.better_than({.violation = std::numeric_limits<double>::infinity()},
+                                     {.cog = PlannedCog::zmp});
   if (led.series.samples.empty()) return made;
   GeneratedMotion other = made_from(std::move(led));
   const bool helps = other.repair.status == RepairStatus::repaired || other.repair.partial;

@@ -29,6 +29,8 @@ struct GeneratedMotion {
   RepairResult repair;                ///< its changes and its `before` are those from `start`
   CommandSeries start;                ///< the motion of inverse kinematics that was repaired
   PlannedCog cog = PlannedCog::keys;  ///< what the COG of `start` follows
+  /// Whether the COG of `start` follows the ZMP of least sway (least_sway.hpp).
+  bool least_sway = false;
   /// How much lower the COG of `start` is than the pattern's default_cog_height() [m].
   double lowered = 0;
   /// Where the motion misses the COG's keys or table by more than the check's tolerance of the COG,
@@ -40,8 +42,9 @@ struct GeneratedMotion {
 /// of the pattern. If `plan` fails the check and no key gives the COG a height, lower ones are
 /// tried, and the start with the smallest violations is repaired. If COG keys are only goals at
 /// the beginning and the end, the starts whose COG follows the ZMP from one to the other are tried,
-/// too; if there are others, only after the repair failed. A start that passes the check is the
-/// result as it is.
+/// too; if there are others, only after the repair failed. Where legs lack joints and neither keys
+/// of the ZMP nor COG keys on the way lead, a COG of least sway is tried. A start that passes the
+/// check is the result as it is.
 GeneratedMotion generate(const RobotModel& model, const Pattern& pattern, const CommandSeries& plan,
                          const RepairOptions& options, const Progress& progress = {});
 

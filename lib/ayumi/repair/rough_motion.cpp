@@ -4,6 +4,7 @@
 #include <map>
 
 #include "ayumi/math/windows.hpp"
+#include "ayumi/motion/correction.hpp"
 #include "ayumi/motion/smooth_motion.hpp"
 #include "ayumi/repair/infeasibility_report.hpp"
 
@@ -76,7 +77,7 @@ std::vector<SmoothWindow> rough_windows(const RobotModel& model, const CommandSe
     for (const TimeWindow& w : windows)
       tried.push_back({std::max(0.0, w.first), std::min(end, w.second), spacing});
     const double violation =
-        roughness(check_consistency(model, smoothed(series, tried), options.check));
+        roughness(check_consistency(model, apply_smoothing(model, series, tried), options.check));
     if (violation >= least) continue;
     least = policy::rough::kGain * violation;
     best = tried;
