@@ -70,6 +70,7 @@ TEST(JoinRefuses, MotionsThatDoNotMeet) {
   const double height = samples.samples.front().cog.z();
   low.keyframes.at(0).cog_height = height - 0.01;
   expect_part(message(low, sample(model, low), 0), "the base is ");
+  expect_part(message(low, sample(model, low), 0), "(limits 0.02 mm and 0.01 deg)");
 
   // A foot is in the air at the end of the first motion and at the beginning of the second one.
   Pattern lifted = step_once();

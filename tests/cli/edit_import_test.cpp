@@ -197,6 +197,8 @@ TEST_F(Edit, TheCycleOfAWalkIsRepeated) {
   EXPECT_EQ(refused.exit_code, 3);
   EXPECT_NE(refused.err.find("its end does not meet its beginning"), std::string::npos)
       << refused.err;
+  EXPECT_NE(refused.err.find("(limits: feet 1.00 mm, base 0.02 mm"), std::string::npos)
+      << refused.err;
   EXPECT_NE(ayumi({"edit", "loop", kWalk, "--alone", "-o", "a.json", "-q"}).exit_code, 0);
 }
 

@@ -172,7 +172,7 @@ TEST(Init, CoupledHipsTurn) {
   const Output made = ayumi(folder, {"new", "walk", "--robot", "robot.urdf", "--steps", "4",
                                      "--turn", "6", "-o", "turn.json"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
-  EXPECT_NE(made.out.find("one that moves both legs"), std::string::npos) << made.out;
+  EXPECT_NE(made.out.find("one more joint moves both legs"), std::string::npos) << made.out;
   const Output check = ayumi(folder, {"check", "turn.json"});
   EXPECT_EQ(check.exit_code, 0) << check.out;
 }

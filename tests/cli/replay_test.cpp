@@ -125,6 +125,7 @@ TEST_F(Replay, BadTablesLeaveNothing) {
       {good.substr(0, good.size() / 2 - 20), "columns, but the rows before have 25"},
       {"", "ayumi"},
       {"1,2,nan" + good.substr(5), "is not a whole number from -32768 to 32767"},
+      {"{\"format\": \"ayumi.pattern/1\", \"robot\": \"hoap1\"}", "this is a pattern"},
       {"t[s],no_joint[rad]\n0,0\n1,0\n", "no_joint"}};
   for (const auto& [bytes, words] : cases) {
     write(folder / "bad.csv", bytes);

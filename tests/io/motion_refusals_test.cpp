@@ -146,7 +146,7 @@ TEST(MotionRefusals, MotionsWithYUpAreTurned) {
        {file("[1, 2]"), "the frame has 2 values, but at least 9 are needed"},
        {file(upright + "1], " + upright + "1, 2]"), "the frame has 10 values, but 9 are needed"},
        {file("[0, 0, 0.3, 0, 1, 0, 0, 0, 1], " + upright + "1]"),
-        "frame 1: the duration must be above 0 s"},
+        "frame 1: the duration must be above 0 s, but it is"},
        {file("[0.02, 0, 0.3, 0, 2, 0, 0, 0, 1], " + upright + "1]"),
         "frame 1: the quaternion of the root has length 2, but 1 is needed"},
        {file(upright + "1, 2], " + upright + "1, 2]"),

@@ -86,7 +86,7 @@ TEST_F(PatternSchema, SchemaAndReaderAgree) {
                                            "no such file",
                                            "but a file is needed",
                                            "the vector has no direction",
-                                           "the velocity must be at most 10 m/s",
+                                           "the velocity must be at most 10 m/s, but it is",
                                            "a point needs a link",
                                            "a payload needs a link",
                                            "needs a duration above",

@@ -823,7 +823,7 @@ TEST(ChoreonoidBody, WrongBodiesAreRefusedInOneLine) {
                  " } ] }\n");
   };
   has(shape("{ type: Sphere }"), "link a: the Sphere has no radius");
-  has(shape("{ type: Cylinder, radius: 0, height: 1 }"), "the radius must be above 0");
+  has(shape("{ type: Cylinder, radius: 0, height: 1 }"), "the radius must be above 0, but it is 0");
   has(shape("{ type: IndexedFaceSet }"), "needs lists 'coordinate' and 'coordIndex'");
   has(shape("{ type: IndexedFaceSet, coordinate: [0, 0, 0], coordIndex: [0, 7] }"),
       "corner 7 does not exist");
