@@ -216,6 +216,9 @@ TEST(MotionFormats, ForeignFilesAreNamed) {
             std::string::npos);
   EXPECT_NE(refusal_of(std::string("PK\x03\x04\x14\0\0\0", 8)).find("that was cut off"),
             std::string::npos);
+  EXPECT_NE(refusal_of(std::string("PK\x03\x04\x14\0\0\0", 8) + "poses.npy trans.npy PK\x05\x06")
+                .find("of a person"),
+            std::string::npos);
   EXPECT_NE(refusal_of("Kaydara FBX Binary  ").find("an FBX scene"), std::string::npos);
   EXPECT_NE(refusal_of("<?xml version=\"1.0\"?><a/>", "m.mtnx").find("R+ Motion"),
             std::string::npos);

@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/file.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
@@ -42,7 +43,7 @@ RobotModel from_text(const std::string& text, const std::string& name) {
 
 // The columns of `other` are in the order of the joints of `model`.
 void expect_same(const RobotModel& model, const RobotModel& other, const std::string& what,
-                 double degree_rounding = 0) {
+                 double degree_rounding = 0, double same = kSameRobot) {
   ASSERT_EQ(other.dof_count(), model.dof_count()) << what;
   const int n = model.velocity_count();
   std::vector<int> column(static_cast<size_t>(n));
@@ -77,9 +78,9 @@ void expect_same(const RobotModel& model, const RobotModel& other, const std::st
       for (int j = 0; j < n; ++j)
         sorted_M(i, j) = other_M(column[static_cast<size_t>(i)], column[static_cast<size_t>(j)]);
     }
-    ASSERT_LT(relative_error(sorted_M, M), kSameRobot) << what << ", mass matrix";
-    ASSERT_LT(relative_error(sorted_bias, bias), kSameRobot) << what << ", bias forces";
-    ASSERT_LT((other_data.cog - data.cog).norm(), 1e-9) << what << ", COG";
+    ASSERT_LT(relative_error(sorted_M, M), same) << what << ", mass matrix";
+    ASSERT_LT(relative_error(sorted_bias, bias), same) << what << ", bias forces";
+    ASSERT_LT((other_data.cog - data.cog).norm(), same) << what << ", COG";
   }
 }
 
@@ -106,6 +107,40 @@ TEST(RobotFormats, RandomTreesAreTheSame) {
   for (unsigned seed = 1; seed <= 12; ++seed)
     expect_same_in_all_formats(
         RobotModel(test::random_tree(seed, 6 + static_cast<int>(seed), false)));
+}
+
+RobotDescription from_file(const std::string& file) {
+  return parse_robot(read_file(file), file, {});
+}
+
+// A robot of another maker, from its URDF and from its MJCF, written in all formats and read again.
+TEST(RobotFormats, TheRobotOfAnotherMakerIsTheSame) {
+  const std::string folder = AYUMI_SOURCE_DIR "/../shared/data/unitree_h1/";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "the folder of Unitree H1 is not there";
+  for (const char* const file : {"urdf/h1.urdf", "h1.xml"}) {
+    SCOPED_TRACE(file);
+    if (std::string(file).ends_with(".xml") && !has_mujoco()) continue;
+    expect_same_in_all_formats(RobotModel(from_file(folder + file)));
+  }
+}
+
+// The maker's MJCF of this robot has ten joints, its numbers have six digits, and the tensors of
+// its ankles are not those of the URDF.
+TEST(RobotFormats, UrdfAndMjcfOfTheMakerAreTheSameRobot) {
+  const std::string folder = AYUMI_SOURCE_DIR "/../shared/data/unitree_h1/";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "the folder of Unitree H1 is not there";
+  if (!has_mujoco()) GTEST_SKIP() << "built without MuJoCo";
+  constexpr double kSixDigits = 1e-5;  // each number has an error of 5e-6 at most
+  const RobotDescription mjcf = from_file(folder + "h1.xml");
+  const RobotModel model(mjcf);
+  RobotDescription urdf = from_file(folder + "urdf/h1.urdf");
+  for (JointDescription& joint : urdf.joints)
+    if (model.find_dof(joint.name) < 0) joint.type = JointType::fixed;
+  for (LinkDescription& link : urdf.links)
+    for (const LinkDescription& other : mjcf.links)
+      if (other.name == link.name && link.name.ends_with("_ankle_link"))
+        link.inertia.about_com = other.inertia.about_com;
+  expect_same(model, RobotModel(urdf), "URDF of H1", 0, kSixDigits);
 }
 
 TEST(RobotFormats, BodyOrderIsThatOfTheIds) {

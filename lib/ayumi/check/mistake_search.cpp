@@ -152,7 +152,13 @@ class Search {
     const std::vector<TrialOutcome> outcomes = trials_.after(pattern_, mends);
     for (size_t i = 0; i < hypotheses.size(); ++i)
       if (outcomes[i].good() || !hypotheses[i].only_if_enough)
-        tried_.push_back({std::move(hypotheses[i]), outcomes[i]});
+        note({std::move(hypotheses[i]), outcomes[i]});
+  }
+
+  // The search goes on beyond kPatience only after a change that leaves few errors.
+  void note(Candidate candidate) {
+    if (helps(candidate, Measure::findings) && leaves_few(candidate)) trials_.go_on();
+    tried_.push_back(std::move(candidate));
   }
 
   // Values without which the errors vanish, with the probably intended value and the range of
@@ -293,14 +299,14 @@ class Search {
         (least > 0 ? "from " + value.text(pattern_, smaller) + " to " + value.text(pattern_, larger)
                    : up_to) +
         value.elsewhere();
-    tried_.push_back({{Rank::amount,
-                       {value.place, written, "with values " + range},
-                       // The errors that remain are those after the smallest change, because an
-                       // author takes the smallest one.
-                       [value, possible](Pattern& p) { value.pull(p, possible); },
-                       number.value == 0 ? 1 : std::abs(1 - limit / number.value),
-                       std::abs(number.value - limit) / value.unit(model_)},
-                      at_limit});
+    note({{Rank::amount,
+           {value.place, written, "with values " + range},
+           // The errors that remain are those after the smallest change, because an author takes
+           // the smallest one.
+           [value, possible](Pattern& p) { value.pull(p, possible); },
+           number.value == 0 ? 1 : std::abs(1 - limit / number.value),
+           std::abs(number.value - limit) / value.unit(model_)},
+          at_limit});
     if (found_.slight || least > 0 || tiny) return;
     std::vector<Hypothesis> slips;
     // The sign is probably wrong: almost no value of this sign is possible, and the size of the

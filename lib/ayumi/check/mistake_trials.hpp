@@ -52,7 +52,8 @@ using Mend = std::function<void(Pattern&)>;
 /// period, or exactly.
 class Trials {
  public:
-  /// Makes at most `most` quick trials. The references must outlive the object.
+  /// Makes at most `most` quick trials, and only kPatience of them if no change helps. The
+  /// references must outlive the object.
   Trials(const RobotModel& model, const Pattern& pattern, const CheckOptions& options,
          const Progress& progress, int most);
 
@@ -74,6 +75,8 @@ class Trials {
   /// cannot be sampled.
   std::vector<TrialOutcome> after(const Pattern& pattern, const std::vector<Mend>& mends);
 
+  /// Notes that a change leaves few errors, so that all trials may be made.
+  void go_on() { promising_ = true; }
   /// Whether the number of trials ended the search while something was left to try.
   bool ended() const { return ended_; }
   int made() const { return made_; }
@@ -82,6 +85,7 @@ class Trials {
   bool left_out() const { return left_out_; }
 
  private:
+  int most() const;
   /// How many trials one quick trial of this pattern counts as.
   int quick_cost(const Pattern& pattern) const;
 
@@ -92,7 +96,7 @@ class Trials {
   int ticks_ = 1;     ///< ticks of the servo in one time step of a quick trial
   int leg_cost_ = 1;  ///< how many trials one trial counts as if a leg has fewer than six joints
   int made_ = 0;
-  bool ended_ = false, left_out_ = false, exact_ = false;
+  bool ended_ = false, left_out_ = false, exact_ = false, promising_ = false;
 };
 
 }  // namespace ayumi

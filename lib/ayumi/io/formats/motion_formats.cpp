@@ -223,6 +223,13 @@ const Foreign* text_kind(const MotionInput& source) {
                                 "copy or save it again"};
     if (source.bytes.find("PK\x05\x06") == std::string::npos) return &cut;
     if (source.bytes.find("[Content_Types].xml") != std::string::npos) return &workbook;
+    // The arrays of SMPL: rotations of a person's joints and places of the root.
+    static const Foreign person = {"", "a motion of a person (SMPL, as AMASS has them)",
+                                   "retarget it to the robot first, and save fps, root_pos, "
+                                   "root_rot and dof_pos with numpy.savez"};
+    if (source.bytes.find("poses.npy") != std::string::npos &&
+        source.bytes.find("trans.npy") != std::string::npos)
+      return &person;
     return source.bytes.find("data.pkl") != std::string::npos ? &torch : &archive;
   }
   static const Foreign urdf = {"", "a robot description (URDF)",

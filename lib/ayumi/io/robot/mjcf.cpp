@@ -34,6 +34,11 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using Model = std::unique_ptr<mjModel, void (*)(mjModel*)>;
 
+// Largest relative difference between the inertia that a body states in full and the one that
+// MuJoCo computes from its principal axes, if nothing but these axes causes it. Reason: MuJoCo
+// turns the axes until the last rotation has a cosine of 1 - 1e-12, which is 1.4e-6 rad.
+constexpr double kPrincipalError = 1e-5;
+
 // On an error, MuJoCo ends the program unless its hook does not return. It also prints warnings.
 [[noreturn]] void throw_words(const char* words) {
   fail(ErrorCode::bad_model, std::string("MuJoCo: ") + words);
@@ -340,6 +345,12 @@ class MjcfReader {
       link.inertia.com = frame.translation();
       link.inertia.about_com = frame.linear() * vector_at(w->body_inertia, body).asDiagonal() *
                                frame.linear().transpose();
+      if (const auto stated = text_.inertias.find(body_name(body));
+          stated != text_.inertias.end()) {
+        const Eigen::Matrix3d exact = shift.linear() * stated->second * shift.linear().transpose();
+        if ((exact - link.inertia.about_com).norm() <= kPrincipalError * exact.norm())
+          link.inertia.about_com = exact;
+      }
     }
     std::vector<PlacedShape> touching;
     for (int i = m_->body_geomadr[body];

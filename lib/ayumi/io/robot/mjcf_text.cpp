@@ -284,9 +284,20 @@ class Cleaner {
       }
   }
 
+  void read_inertia(const TiXmlElement* body) {
+    const std::vector<double> stated =
+        mjcf_numbers(xml_attribute(body->FirstChildElement("inertial"), "fullinertia", ""));
+    const std::string name = xml_attribute(body, "name", "");
+    if (stated.size() != 6 || name.empty()) return;
+    text_.inertias[name] << stated[0], stated[3], stated[4],  //
+        stated[3], stated[1], stated[5],                      //
+        stated[4], stated[5], stated[2];
+  }
+
   void walk_bodies(TiXmlElement* body, const std::string& above, std::set<std::string>& weighed) {
     const std::string child_class = xml_attribute(body, "childclass", above);
     const bool weighs = weigh_all_ || !body->FirstChildElement("inertial");
+    if (!weighs && body->ValueStr() == "body") read_inertia(body);
     for (TiXmlElement *child = body->FirstChildElement(), *next = nullptr; child; child = next) {
       next = child->NextSiblingElement();
       const std::string& kind = child->ValueStr();

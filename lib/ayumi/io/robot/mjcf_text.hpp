@@ -25,8 +25,10 @@ struct MjcfMesh {
 
 struct MjcfText {
   std::string xml;
-  std::string files;                             ///< bytes of included files, one after the other
-  std::map<std::string, MjcfMesh> meshes;        ///< assets by name
+  std::string files;                       ///< bytes of included files, one after the other
+  std::map<std::string, MjcfMesh> meshes;  ///< assets by name
+  /// fullinertia of bodies about the centre of mass, in the axes of the body [kg m^2].
+  std::map<std::string, Eigen::Matrix3d> inertias;
   std::map<std::string, double> force_limits;    ///< actuatorfrcrange of joints [N m, N]
   std::map<std::string, double> damping_ratios;  ///< dampratio of actuators, by joint
   std::map<std::string, double> velocity_gains;  ///< kv of position actuators, by joint
