@@ -53,7 +53,8 @@ std::string HelpFormatter::make_help(const CLI::App* app, std::string name,
   std::string text = app->get_description() + "\n\n";
   const std::string examples = examples_of(*app);
   if (!examples.empty()) text += examples + "\n\n";
-  text += make_usage(app, name) + make_positionals(app) + make_groups(app, mode);
+  text += make_usage(app, name) + make_positionals(app) + make_subcommands(app, mode) +
+          make_groups(app, mode);
   text += "\nayumi --help lists the options that every command takes.\n";
   return broken_at(text, terminal_columns());
 }

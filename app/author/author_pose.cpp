@@ -14,6 +14,7 @@
 #include "ayumi/dynamics/reach.hpp"
 #include "ayumi/io/pattern/pattern_edit.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/io/pattern/pattern_rewrite.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/motion/pattern_context.hpp"
 #include "ayumi/plan/sample.hpp"
@@ -892,35 +893,50 @@ void difference(const OrderedJson& from, const OrderedJson& to, const std::strin
   }
 }
 
+size_t keyframe_at(const Pattern& pattern, const std::string& pointer) {
+  for (size_t i = 0; i < pattern.keyframes.size(); ++i)
+    if (pointer_of_keyframe(pattern, i) == pointer) return i;
+  fail(ErrorCode::usage, "the pattern has no keyframe " + pointer);
+}
+
+Pattern with_keyframe_mirrored(const AuthorMotion& motion, const Pattern& pattern, size_t i) {
+  return with_key_edited(motion.task.robot, pattern,
+                         {.at = pattern.keyframes[i].t, .mirror = true});
+}
+
 }  // namespace
 
 std::vector<PatternEdit> mirrored_keyframe(const AuthorMotion& motion, const std::string& pointer) {
-  const Pattern& pattern = motion.task.pattern;
-  for (size_t i = 0; i < pattern.keyframes.size(); ++i) {
-    if (pointer_of_keyframe(pattern, i) != pointer) continue;
-    KeyEdit edit;
-    edit.at = pattern.keyframes[i].t;
-    edit.mirror = true;
-    Pattern before = pattern;
-    before.table.reset();
-    const Pattern after = with_key_edited(motion.task.robot, before, edit);
-    const OrderedJson& written = motion.document.at(OrderedJson::json_pointer(pointer));
-    OrderedJson from = written_keyframes(before).at(i), to = written_keyframes(after).at(i);
-    for (OrderedJson* const frame : {&from, &to}) {
-      frame->erase("t");
-      // Angles of joints are a posture without a name; the author may have written them as
-      // "joints".
-      if (!written.contains("joints") || !frame->contains("posture") ||
-          !frame->at("posture").is_object())
-        continue;
-      (*frame)["joints"] = frame->at("posture");
-      frame->erase("posture");
-    }
-    std::vector<PatternEdit> edits;
-    difference(from, to, pointer, written, edits);
-    return edits;
+  Pattern before = motion.task.pattern;
+  before.table.reset();
+  const size_t i = keyframe_at(before, pointer);
+  const Pattern after = with_keyframe_mirrored(motion, before, i);
+  const OrderedJson& written = motion.document.at(OrderedJson::json_pointer(pointer));
+  OrderedJson from = written_keyframes(before).at(i), to = written_keyframes(after).at(i);
+  for (OrderedJson* const frame : {&from, &to}) {
+    frame->erase("t");
+    // Angles of joints are a posture without a name; the author may have written them as "joints".
+    if (!written.contains("joints") || !frame->contains("posture") ||
+        !frame->at("posture").is_object())
+      continue;
+    (*frame)["joints"] = frame->at("posture");
+    frame->erase("posture");
   }
-  fail(ErrorCode::usage, "the pattern has no keyframe " + pointer);
+  std::vector<PatternEdit> edits;
+  difference(from, to, pointer, written, edits);
+  return edits;
+}
+
+std::optional<std::string> text_with_keyframe_mirrored(const AuthorMotion& motion,
+                                                       const std::string& text,
+                                                       const AuthorSetting& setting,
+                                                       const std::string& pointer) {
+  const Pattern& before = motion.task.pattern;
+  // A table would get another name, and parameters that are set from outside would be written.
+  if (before.table || !setting.set.empty()) return std::nullopt;
+  const Pattern after = with_keyframe_mirrored(motion, before, keyframe_at(before, pointer));
+  const auto own = rewritten(text, before, after, {.out = setting.file});
+  return own ? std::optional(own->text) : std::nullopt;
 }
 
 }  // namespace ayumi::app

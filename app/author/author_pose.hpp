@@ -46,4 +46,12 @@ std::vector<PatternEdit> captured(const AuthorMotion& motion, double time, const
 /// captured().
 std::vector<PatternEdit> mirrored_keyframe(const AuthorMotion& motion, const std::string& pointer);
 
+/// The text with this keyframe mirrored in the author's own words: expressions, comments and
+/// spacing inside the keyframe stay. `text` is that of the motion. Nothing if the text cannot
+/// express this; mirrored_keyframe() then can. Throws the same errors as mirrored_keyframe().
+std::optional<std::string> text_with_keyframe_mirrored(const AuthorMotion& motion,
+                                                       const std::string& text,
+                                                       const AuthorSetting& setting,
+                                                       const std::string& pointer);
+
 }  // namespace ayumi::app

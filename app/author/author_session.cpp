@@ -492,7 +492,12 @@ AuthorAnswer AuthorSession::mirror(const OrderedJson& request) {
     const Shown shown = view();
     if (!shown->motion || shown->error)
       return refused("the text of the pattern has an error; correct it first");
-    return {200, {{"edits", edits_json(mirrored_keyframe(*shown->motion, request.at("pointer")))}}};
+    const std::string pointer = request.at("pointer");
+    OrderedJson answer = {{"edits", edits_json(mirrored_keyframe(*shown->motion, pointer))}};
+    if (const auto text =
+            text_with_keyframe_mirrored(*shown->motion, shown->text, setting_, pointer))
+      answer["text"] = *text;
+    return {200, answer};
   });
 }
 

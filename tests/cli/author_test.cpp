@@ -807,6 +807,19 @@ TEST_F(AuthorServer, MovesTargetsAndMirrorsKeyframes) {
   EXPECT_EQ(key["joints"], OrderedJson({{"l_elbow", -50}})) << key;
 }
 
+// Expressions, comments and the spacing inside a keyframe stay when it is mirrored.
+TEST_F(AuthorServer, MirrorsAKeyframeInTheWordsOfItsAuthor) {
+  const std::string before =
+      R"({ "t": 0.71, "zmp": "left", /* up */ "joints": {"l_elbow" :"-9*2"} })";
+  save(replaced(R"({ "t": 0.71, "zmp": "center" })", before));
+  const Server server(file);
+  const auto [status, answer] = server.post("mirror", {{"pointer", "/keyframes/1"}});
+  ASSERT_EQ(status, 200) << answer;
+  EXPECT_EQ(answer["text"],
+            replaced(R"({ "t": 0.71, "zmp": "center" })",
+                     R"({ "t": 0.71, "zmp": "right", /* up */ "joints": {"r_elbow" :"-9*2"} })"));
+}
+
 TEST_F(AuthorServer, CapturesPosturesAndTheirMirrorImages) {
   const Server server(file);
   const auto [status, plain] = server.post("posture", {{"time", 2.4}, {"name", "a b"}});

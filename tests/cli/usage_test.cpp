@@ -1,6 +1,7 @@
 // What all calls of the program have in common: help, version, mistakes and exit codes.
 
 #include <cstdlib>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
@@ -65,6 +66,43 @@ TEST_F(Usage, HelpOfASubcommandHasItsOwnExamples) {
   EXPECT_NE(bake.find("Examples:\n  ayumi edit bake walk.json -o baked.json\n\nUsage:"),
             std::string::npos)
       << bake;
+}
+
+// Every subcommand, and every subcommand of a subcommand, prints its own help: each page names its
+// command in the line of its usage. A word that is no subcommand gets no help of its command.
+TEST_F(Usage, EveryCommandPrintsItsOwnHelp) {
+  const std::regex listed("\n  ([a-z-]+) +[a-z]");
+  int pages = 0;
+  const std::function<void(const std::vector<std::string>&)> look =
+      [&](const std::vector<std::string>& command) {
+        std::vector<std::string> words = command;
+        words.push_back("--help");
+        const Output help = ayumi(words);
+        EXPECT_EQ(help.exit_code, 0) << help.err;
+        std::string usage = "\nUsage: ayumi";
+        for (const std::string& word : command) usage += " " + word;
+        EXPECT_NE(help.out.find(usage + " "), std::string::npos) << help.out;
+        ++pages;
+        const size_t kinds = command.empty() ? 0 : help.out.find("\nSubcommands:");
+        if (kinds == std::string::npos) return;
+        for (std::sregex_iterator
+                 c(help.out.begin() + static_cast<std::ptrdiff_t>(kinds), help.out.end(), listed),
+             end;
+             c != end; ++c) {
+          std::vector<std::string> inner = command;
+          inner.push_back((*c)[1].str());
+          look(inner);
+        }
+      };
+  look({});
+  EXPECT_GT(pages, 50);
+  const Output mistyped = ayumi({"sweep", "report", "--help"});
+  EXPECT_EQ(mistyped.exit_code, 2);
+  EXPECT_EQ(mistyped.out, "");
+  EXPECT_NE(mistyped.err.find("'report' is neither a file nor a subcommand; the subcommands are "
+                              "merge, status"),
+            std::string::npos)
+      << mistyped.err;
 }
 
 // An example with an option that no longer exists would be pasted and refused.

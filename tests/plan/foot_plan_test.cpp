@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "ayumi/math/rotation.hpp"
+#include "ayumi/plan/place_text.hpp"
 #include "tests/support/biped.hpp"
 
 namespace ayumi {
@@ -55,6 +56,13 @@ TEST(FootPlan, OneGivenFootPlacesTheOther) {
   pattern.start_feet[0] = left;
   const FootPlan plan(test::biped(), pattern);
   EXPECT_LT((plan.pose(Side::right, 0).translation() - Vector3d(1.1, 2, 0)).norm(), 1e-12);
+}
+
+// A key with the numbers that a message or `inspect` states counts as a key at this place, also
+// where the place has many digits.
+TEST(FootPlan, APlaceInWordsIsExactEnoughForAKey) {
+  EXPECT_EQ(place_text({0, -0.039, 0.1}), "[0, -0.039, 0.1]");
+  EXPECT_EQ(place_text({-6.1e-6, -0.20285673, -1e-9}), "[-6e-06, -0.202857, 0]");
 }
 
 TEST(FootPlan, SwingsFromFootholdToFootholdAtRestAtBothEnds) {

@@ -9,11 +9,10 @@
 
 namespace ayumi {
 
-/// "[0.1, -0.039, 0]" in metres, rounded to the micrometre; a zero has no minus sign.
+/// "[0.1, -0.039, 0]" in metres, rounded to the micrometre, so that a key with these numbers is at
+/// this place; a zero has no minus sign.
 inline std::string place_text(const Eigen::Vector3d& place) {
-  const auto number = [](double value) {
-    return text::brief(std::round(1e6 * value) * 1e-6 + 0.0);
-  };
+  const auto number = [](double value) { return text::exact(std::round(1e6 * value) / 1e6 + 0.0); };
   return "[" + number(place.x()) + ", " + number(place.y()) + ", " + number(place.z()) + "]";
 }
 

@@ -377,7 +377,7 @@ class Page {
     const { status, value } = await this.server.ask("POST", "mirror", { pointer });
     if (status !== 200) return this.say(value.message || "The keyframe cannot be mirrored.");
     if (!value.edits.length) return this.say("The keyframe is its own mirror image.");
-    return this.edit(value.edits);
+    return value.text ? this.write(value.text) : this.edit(value.edits);
   }
 
   select(thing, time) {
