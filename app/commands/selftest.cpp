@@ -248,15 +248,15 @@ const std::array<Job, 8> kJobs = {{
     {"viip", "a walk by VIIP", viip_text,
      "fa52493fe95693c853767974824c21c30b02442dca80705bc441350188633dae"},
     {"patterns", "the other bundled patterns", patterns_text,
-     "3adbcb96d4ebbe02dff3080ec7644f3de127e4414cb4b5d1c5127bdd53cfab5d"},
+     "323bb4e42556ec843e7028157758c1d0364f62d716c70644e652a58b2fdb7bfe"},
     {"laws", "other control laws, with a push and noise", laws_text,
-     "592865eecec64627668740ec2199c017950eb95a6eb9751675dc7137b5129d19"},
+     "ba12348c399d3640cd83b872c447d0eaa2dec12b7f2bd23145d4991e7483bbd0"},
     {"check", "findings and likely causes of patterns with mistakes", check_text,
      "feb1ab66e3b52735b231566c7a93d902437a5f3d7df5b1c1fbb3df04ccd2e002"},
     {"repair", "a repaired walk", repair_text,
      "16a496a391adf500cd5316e5b640ab9626fce3f2cea47a77d8aa2ad8a57cf4d8"},
     {"push", "limits of pushes", push_text,
-     "0bcf10d7962e156ad391cb66afce103f989daec720ee909b72e3ec6195b0f6a7"},
+     "f92ef0c7236b3bc0d650cdbc1efe91882256146b603508fde3cc6b4e67e704c3"},
 }};
 
 void compare(Context& context, const SelftestCommand& options) {

@@ -107,6 +107,24 @@ TEST(Feedback, RockingIsDampedUpToALimit) {
   EXPECT_LT((asked(below, z, omega) - 0.999 * most).norm(), 1e-12);
 }
 
+// A ZMP that is wanted outside the support needs the whole support. So the damping must not move
+// the ZMP back from the edge there; other directions are damped as before.
+TEST(Feedback, DampingGivesWayToAZmpThatIsWantedOutside) {
+  const double K = 1.25, omega = 6.5, z = 0.22, most = 0.09 * z * omega * omega;
+  const auto left = [&](const Vector2d& missing, const Vector2d& rocking) {
+    return without_part_against(missing, rocking, K, omega, z);
+  };
+  const Vector2d rocking(0.6 * most, 0.5 * most);
+  EXPECT_EQ(left(Vector2d::Zero(), rocking), rocking);
+  EXPECT_LT((left({z, 0}, rocking) - Vector2d(0, rocking.y())).norm(), 1e-12);
+  EXPECT_EQ(left({-z, 0}, rocking), rocking);
+  EXPECT_EQ(left({0.001, 0}, rocking), rocking) << "a small distance bounds only a larger damping";
+  const double near = left({0.012, 0}, rocking).x(), far = left({0.016, 0}, rocking).x();
+  EXPECT_GT(rocking.x(), near);
+  EXPECT_GT(near, far);
+  EXPECT_GT(far, 0);
+}
+
 // (20) with critical damping does not overshoot.
 TEST(Feedback, LongTermForceBringsTheHeightBack) {
   const double mass = 6.5, omega = 6.6;

@@ -126,6 +126,17 @@ TEST(Hoap1Walk, StandsAPushToTheSideThatTheRangeOfTheHipsAllows) {
   }
 }
 
+// A push of 1.5 times the capture bound backwards. The whole sole is needed until the DCM is inside
+// it again, so the damping of the rocking must not keep the ZMP away from the edge.
+TEST(Hoap1Walk, StandsAPushThatNeedsTheWholeSole) {
+  const CommandSeries series = sample(walk().model, stand_pattern(walk().model, 3));
+  SimulateOptions options = unpushed("dtad");
+  options.profile = "hoap1-strong";
+  options.scenario = {
+      {.at = 0.5, .duration = 0.02, .what = Push{.magnitude = 3.02, .direction = {-1, 0, 0}}}};
+  EXPECT_EQ(simulate(walk().model, series, options).result.outcome, Outcome::stands);
+}
+
 TEST(Hoap1Walk, PushOnSlipperyGround) {
   SimulateOptions options = pushed("dtad");
   options.world.friction = 0.4;

@@ -30,6 +30,11 @@ constexpr double kAdmissibleForceShare = 0.1;
 // survives 0.78 B instead of 1.08 B.
 constexpr double kRockingLimit = 0.09;
 
+// Distance of the wanted ZMP from the support at which the damping of the rocking no longer moves
+// the ZMP back from the edge, as a multiple of K z (of z if K is below 1): 22 mm on HOAP-1. Chosen:
+// about the shift that kRockingLimit allows (docs/theory.md, "Late sensors").
+constexpr double kUndampedDistance = 0.08;
+
 }  // namespace
 
 CogError cog_error(const CommandSample& command, const Estimate& estimate) {
@@ -56,6 +61,16 @@ Eigen::Vector2d rocking_acceleration(double gain, double omega, double z,
   const Eigen::Vector2d asked = gain * omega * (estimate.dcog - reference_dcog).head<2>();
   const double size = asked.norm(), most = kRockingLimit * z * omega * omega;
   return size > most ? Eigen::Vector2d(most / size * asked) : asked;
+}
+
+Eigen::Vector2d without_part_against(const Eigen::Vector2d& missing, const Eigen::Vector2d& rocking,
+                                     double K, double omega, double z) {
+  const double distance = missing.norm();
+  if (distance == 0) return rocking;
+  const Eigen::Vector2d outward = missing / distance;
+  const double share = std::max(0.0, 1 - distance / (kUndampedDistance * std::max(1.0, K) * z));
+  const double most = share * kRockingLimit * z * omega * omega, along = outward.dot(rocking);
+  return along > most ? Eigen::Vector2d(rocking + (most - along) * outward) : rocking;
 }
 
 double push_stiffness(double z_H, double z_d) { return 2 * kGravity * z_H / (z_d * z_d); }

@@ -54,6 +54,12 @@ Eigen::Vector2d rocking_acceleration(double gain, double omega, double z,
                                      const Eigen::Vector3d& reference_dcog,
                                      const Estimate& estimate);
 
+/// The rocking_acceleration() that remains if the wanted ZMP is outside the support by the vector
+/// `missing` [m]. The part along this vector moves the ZMP back from the edge, so its bound falls
+/// to zero with the distance. K is that of (18), and z the height of the COG [m].
+Eigen::Vector2d without_part_against(const Eigen::Vector2d& missing, const Eigen::Vector2d& rocking,
+                                     double K, double omega, double z);
+
 /// Stiffness and damping of the vertical force. They are forces per metre, or per metre and unit of
 /// mass if the caller multiplies by the mass.
 struct HeightGains {

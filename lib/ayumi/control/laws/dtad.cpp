@@ -4,7 +4,7 @@
 //   reffz = max(fmin, cmdfz + m (Kz Dz + Dz Ddz))                  (20)
 //   w2    = reffz / (m (zG - zZ))                                  (17)
 //   ddx   = cmdddx + ka w2 (zhat - refZ - zd) + ks^2 w^2 (cmdx - xref) + 2 kd w (cmddx - dxref)
-//           + sat(damp w (dxhat - dxref))
+//           + sat(damp w (dxhat - dxref)), less what works against a Z* outside the support
 //   zd'   = (zhat - refZ - zd) / Tw                                accepted offset
 //   dxref += dt ddx; theta from (22)(23); xref is read back from the posture.
 // The term with ka is the part of (14) that the reference lacks. By (14), w2 (x - refZ) is the
@@ -359,7 +359,8 @@ CogReference Dtad::cog_reference(const Estimate& estimate, LawTerms& terms) {
   terms.pull = pull;
   terms.short_term.head<2>() = short_term_acceleration(p.zmp_gain, w2, gap);
   if (carries)
-    terms.rocking.head<2>() = rocking_acceleration(p.rocking_damping, w, z, body_.dcog(), estimate);
+    terms.rocking.head<2>() = without_part_against(
+        outside_, rocking_acceleration(p.rocking_damping, w, z, body_.dcog(), estimate), K, w, z);
   if (estimate.contact) terms.short_term.z() = p.fz_gain * (ref.fz - filter_.fz()) / m;
   ref.ddcog = terms.motion + terms.pull;
   ref.ddcog += terms.short_term;
