@@ -114,6 +114,29 @@ TEST(Compare, LandingsAndLoadsOfTheFeetComeLate) {
   EXPECT_NEAR(same.loads[2].correlation, 1, 1e-9);
 }
 
+// Load cells of a real robot do not read 0 in the air. What they read there is subtracted, so that
+// the load, its share and the landings are those of the ground.
+TEST(Compare, WhatLoadCellsReadInTheAirIsSubtracted) {
+  SensorTable sensors = loads_from(0, 0);
+  const Comparison exact = compared(angles_from(0), sensors, {.shift = 0});
+  EXPECT_FALSE(notes_hold(exact, "load cells")) << all_notes(exact);
+  sensors.foot_load.col(0).array() -= 6;
+  sensors.foot_load.col(1).array() += 5;
+  const Comparison found = compared(angles_from(0), sensors, {.shift = 0});
+  EXPECT_TRUE(notes_hold(found, "the load cells of the left foot read -6 N while the foot is in"))
+      << all_notes(found);
+  EXPECT_TRUE(notes_hold(found, "the load cells of the right foot read 5 N")) << all_notes(found);
+  for (const size_t i : {0u, 1u}) EXPECT_NEAR(found.loads[i].mean, exact.loads[i].mean, 1e-6);
+  EXPECT_NEAR(found.loads[2].correlation, 1, 1e-6);
+  ASSERT_EQ(found.landings.size(), exact.landings.size());
+  for (size_t i = 0; i < exact.landings.size(); ++i)
+    EXPECT_NEAR(found.landings[i].measured, exact.landings[i].measured, 1e-9);
+  // Cells that read more than a fifth of the load in the air carry the robot there.
+  sensors.foot_load.col(0).array() += 60;
+  EXPECT_FALSE(
+      notes_hold(compared(angles_from(0), sensors, {.shift = 0}), "of the left foot read"));
+}
+
 TEST(Compare, TheImuOfARobotThatStandsFeelsItsWeight) {
   SensorTable sensors;
   sensors.dt = walk_log().dt;

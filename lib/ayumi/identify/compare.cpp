@@ -36,6 +36,11 @@ constexpr double kLanded = 0.15, kInAir = 0.05, kAirTime = 0.05;
 // Largest distance of landings that count as the same [s]. Chosen: a third of a quick step.
 constexpr double kSameLanding = 0.15;
 
+// Largest share of the load of both feet that counts as the zero error of the load cells of one
+// foot, and the smallest share that is named. Chosen: the cells of a HOAP-3 read -11 % in the air,
+// and cells that read more than a fifth carry the robot; a hundredth is below the noise of cells.
+constexpr double kMostZero = 0.2, kNamedZero = 0.01;
+
 // Factor by which the sizes of measured and simulated values may differ before the recording counts
 // as one in another unit. Chosen: load cells of real robots lose a third of the weight; kilograms
 // differ by a factor of 9.8, and degrees by one of 57.
@@ -169,6 +174,45 @@ VectorXd share_of(const VectorXd& left, const VectorXd& right) {
   return share;
 }
 
+/// The reading of the load cells of a foot while it is in the air [N]: the median over the rows in
+/// which the simulated foot has no load, from kAirTime before until kAirTime after them. It is 0 if
+/// there are no such rows.
+double reading_in_air(const SimulationLog& log, size_t foot, const VectorXd& measured, double dt,
+                      double shift) {
+  const auto count = static_cast<Index>(log.samples.size());
+  const auto margin = static_cast<Index>(std::lround(kAirTime / log.dt));
+  std::vector<double> readings;
+  Index since = 0;  // the simulated foot has been in the air from this sample on
+  for (Index k = 0; k < count; ++k) {
+    if (log.samples[static_cast<size_t>(k)].foot_force[foot].z() > 0) since = k + 1;
+    const Index middle = k - margin;
+    if (middle - margin < since) continue;
+    const double row = (log.dt * static_cast<double>(middle) - shift) / dt;
+    if (row >= 0 && row < static_cast<double>(measured.size()))
+      readings.push_back(measured[static_cast<Index>(row)]);
+  }
+  if (readings.empty()) return 0;
+  const auto half = readings.begin() + static_cast<std::ptrdiff_t>(readings.size() / 2);
+  std::nth_element(readings.begin(), half, readings.end());
+  return *half;
+}
+
+/// Subtracts from the loads of each foot what its cells read while the foot is in the air.
+void tare(const SimulationLog& log, double dt, std::array<VectorXd, 2>& measured,
+          Comparison& result) {
+  const double load = measured[0].mean() + measured[1].mean();
+  for (const size_t foot : {0u, 1u}) {
+    const double zero = reading_in_air(log, foot, measured[foot], dt, result.shift);
+    if (!(std::abs(zero) < kMostZero * load)) continue;
+    measured[foot].array() -= zero;
+    if (std::abs(zero) > kNamedZero * load)
+      result.notes.push_back("sensors: the load cells of the " +
+                             std::string(foot == 0 ? "left" : "right") + " foot read " +
+                             text::brief(zero, 2) +
+                             " N while the foot is in the air; this is subtracted");
+  }
+}
+
 void compare_loads(const SimulationLog& log, const SensorTable& sensors, Comparison& result) {
   const auto count = static_cast<Index>(log.samples.size());
   std::array<VectorXd, 2> simulated = {VectorXd(count), VectorXd(count)}, measured;
@@ -179,9 +223,11 @@ void compare_loads(const SimulationLog& log, const SensorTable& sensors, Compari
     simulated[foot] = low_pass(simulated[foot], log.dt, kLoadBand);
     measured[foot] =
         low_pass(sensors.foot_load.col(static_cast<Index>(foot)), sensors.dt, kLoadBand);
+  }
+  tare(log, sensors.dt, measured, result);
+  for (const size_t foot : {0u, 1u})
     result.loads.push_back(curve_of(foot == 0 ? "left" : "right", "N", measured[foot], sensors.dt,
                                     simulated[foot], log.dt, result));
-  }
   const VectorXd measured_share = share_of(measured[0], measured[1]),
                  simulated_share = share_of(simulated[0], simulated[1]);
   result.loads.push_back(
