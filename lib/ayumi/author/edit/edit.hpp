@@ -66,10 +66,10 @@ Pattern with_course(const RobotModel& model, const Pattern& pattern, const Comma
 
 /// A single keyframe that is copied, moved or mirrored.
 struct KeyEdit {
-  double at = 0;             ///< time of the keyframe, within 0.5 ms [s]
-  std::optional<double> to;  ///< its new time [s]; without it, the time stays
-  bool copy = false;         ///< the keyframe also stays at its old time
-  bool mirror = false;       ///< left and right are exchanged at the new time
+  double at = 0;                  ///< time of the keyframe, within 0.5 ms [s]
+  std::optional<double> to = {};  ///< its new time [s]; without it, the time stays
+  bool copy = false;              ///< the keyframe also stays at its old time
+  bool mirror = false;            ///< left and right are exchanged at the new time
 };
 /// A keyframe that is moved to the time of another one is merged with it. For a track that both
 /// have, the moved keyframe counts. Throws Error(usage) for a time without a keyframe or beyond the
