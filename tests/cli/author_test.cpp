@@ -810,14 +810,14 @@ TEST_F(AuthorServer, MovesTargetsAndMirrorsKeyframes) {
 // Expressions, comments and the spacing inside a keyframe stay when it is mirrored.
 TEST_F(AuthorServer, MirrorsAKeyframeInTheWordsOfItsAuthor) {
   const std::string before =
-      R"({ "t": 0.71, "zmp": "left", /* up */ "joints": {"l_elbow" :"-9*2"} })";
+      R"({ "t": 0.71, "zmp": "left", /* up */ "joints": {"l_elbow" :"-6*pi"} })";
   save(replaced(R"({ "t": 0.71, "zmp": "center" })", before));
   const Server server(file);
   const auto [status, answer] = server.post("mirror", {{"pointer", "/keyframes/1"}});
   ASSERT_EQ(status, 200) << answer;
   EXPECT_EQ(answer["text"],
             replaced(R"({ "t": 0.71, "zmp": "center" })",
-                     R"({ "t": 0.71, "zmp": "right", /* up */ "joints": {"r_elbow" :"-9*2"} })"));
+                     R"({ "t": 0.71, "zmp": "right", /* up */ "joints": {"r_elbow" :"-6*pi"} })"));
 }
 
 TEST_F(AuthorServer, CapturesPosturesAndTheirMirrorImages) {
