@@ -45,6 +45,8 @@ void watch_for_signals() {
   has_timer = timer_create(CLOCK_MONOTONIC, &event, &impatience) == 0;
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
+  // A closed terminal stops the work as Ctrl-C does, unless nohup has made the program ignore it.
+  if (std::signal(SIGHUP, SIG_IGN) != SIG_IGN) std::signal(SIGHUP, on_signal);
   std::signal(SIGXFSZ, SIG_IGN);
 }
 

@@ -11,6 +11,7 @@
 #include "ayumi/sim/plant/plant.hpp"
 #include "ayumi/sim/plant_interface.hpp"
 #include "ayumi/sim/simulation_log.hpp"
+#include "ayumi/sim/step_check.hpp"
 #include "bindings.hpp"
 #ifdef AYUMI_HAS_MUJOCO
 #include "ayumi/sim/plant_mujoco/mujoco_plant.hpp"
@@ -72,10 +73,7 @@ class PythonPlant {
     report_ =
         returned<StepReport>(object_.get().attr("step")(py::cast(targets), py::cast(input), dt),
                              "plant: step(targets, input, dt) must return an ayumi.StepReport");
-    if (report_.torque.size() != model_->dof_count())
-      fail(ErrorCode::usage, "the plant reports " + std::to_string(report_.torque.size()) +
-                                 " torques, but robot '" + model_->name() + "' has " +
-                                 std::to_string(model_->dof_count()) + " joints");
+    check_report(*model_, report_);
     take_state();
     return report_;
   }
@@ -85,10 +83,7 @@ class PythonPlant {
     const py::gil_scoped_acquire acquire;
     state_ = returned<RobotState>(object_.get().attr("state"),
                                   "plant: state must be an ayumi.RobotState");
-    if (state_.theta.size() != model_->dof_count())
-      fail(ErrorCode::usage, "the state of the plant has " + std::to_string(state_.theta.size()) +
-                                 " joint angles, but robot '" + model_->name() + "' has " +
-                                 std::to_string(model_->dof_count()) + " joints");
+    check_state(*model_, state_);
     update_velocities(*model_, state_, data_);
   }
 

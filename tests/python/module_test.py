@@ -243,6 +243,18 @@ class Tables(unittest.TestCase):
         self.assertGreater(len(safe.table), len(task.series))
         # The file has encoder counts, one line per row.
         self.assertGreaterEqual(len(safe.table.hoap(task.robot).splitlines()), len(safe.table))
+        for times in ({"ramp": 61}, {"ramp": -1}, {"hold": float("nan")}, {"hold": 1e9}):
+            with self.assertRaisesRegex(ayumi.Error, "it must be from 0 to 60 s"):
+                ayumi.make_safe(task, ayumi.table(task), **times)
+        for dt in (0, -1, float("nan"), float("inf"), 1e-9):
+            with self.assertRaisesRegex(ayumi.Error, "a table cannot have rows every"):
+                ayumi.table(task).resampled(dt)
+
+    def test_a_table_is_of_the_robot_of_its_run(self):
+        other = ayumi.load_robot("humanoid30")
+        log = ayumi.plan(ayumi.sample(ayumi.squat_pattern(other, cycles=1), other))
+        with self.assertRaisesRegex(ayumi.Error, "the run has other joints than robot 'hoap1'"):
+            ayumi.table(walk(), log)
 
 
 class Errors(unittest.TestCase):
@@ -502,6 +514,14 @@ class InTheLoop(unittest.TestCase):
 
         with self.assertRaisesRegex(ayumi.Error, "must return an ayumi.StepReport"):
             ayumi.simulate(self.task, plant=lambda *about: WithoutReport(*about, 0.0))
+
+        class WithoutTorques(OffsetPlant):
+            def step(self, targets, input, dt):
+                super().step(targets, input, dt)
+                return ayumi.StepReport(np.full(len(targets), np.nan), [], [])
+
+        with self.assertRaisesRegex(ayumi.Error, "reports a torque of nan; numbers below 1e6"):
+            ayumi.simulate(self.task, plant=lambda *about: WithoutTorques(*about, 0.0))
 
         def fails(*_):
             raise ValueError("from the controller")

@@ -14,6 +14,10 @@
 namespace ayumi {
 
 struct SafetyOptions {
+  /// Longest ramp and longest hold [s]. Chosen: a robot that approaches or waits for longer than a
+  /// minute looks as if it had stopped.
+  static constexpr double kLongestRest = 60;
+
   std::string profile;        ///< actuator profile for the speed limits; "" for the default
   double ramp = 2.0;          ///< smallest duration of the approach [s]; 0 for no ramp
   std::string from = "home";  ///< named posture the robot stands in; "first" = the first row

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
 #include "ayumi/math/elementary.hpp"
 
 namespace ayumi {
@@ -26,6 +28,13 @@ ReferenceRow between(const ReferenceRow& a, const ReferenceRow& b, double u) {
 ReferenceTrajectory resampled(const ReferenceTrajectory& table, double dt) {
   // Definition: a time belongs to a row if it is nearer than this to the row, as a fraction of dt.
   constexpr double kOnRow = 1e-6;
+  // Largest number of rows. Chosen: the longest pattern, 3600 s, at 10 kHz.
+  constexpr double kMostRows = 36e6;
+  const double rows = static_cast<double>(table.rows.size()) * table.dt / dt;
+  if (!(dt > 0 && rows <= kMostRows && std::isfinite(dt)))
+    fail(ErrorCode::usage, "a table cannot have rows every " + text::exact(dt) +
+                               " s; the time must be above 0, and the table may have at most " +
+                               text::brief(kMostRows) + " rows");
   if (table.rows.empty() || std::abs(dt - table.dt) < kOnRow * table.dt) return table;
   ReferenceTrajectory result = table;
   result.dt = dt;

@@ -93,6 +93,26 @@ void check_state(const RobotModel& model, const RobotState& state) {
                                text::brief(length) + "; a unit quaternion is expected");
 }
 
+void check_report(const RobotModel& model, const StepReport& report) {
+  if (report.torque.size() != model.dof_count())
+    fail(ErrorCode::usage, "the plant reports " + std::to_string(report.torque.size()) +
+                               " torques, but robot '" + model.name() + "' has " +
+                               std::to_string(model.dof_count()) + " joints");
+  const auto check = [&](const std::string& what, const auto& value) {
+    if (!sound(value))
+      fail(ErrorCode::usage, model.name() + ": the plant reports " + what + " " +
+                                 text::brief(unsound(value)) + "; numbers below 1e6 are expected");
+  };
+  check("a torque of", report.torque);
+  check("an angle of a motor of", report.motor);
+  check("a rate of a motor of", report.motor_rate);
+  for (const std::vector<SoleForce>& sole : report.soles)
+    for (const SoleForce& contact : sole) {
+      check("a place of a sole at", contact.position);
+      check("a force at a sole of", contact.force);
+    }
+}
+
 void check_step(const RobotModel& model, const VectorXd& targets, const StepInput& input, double dt,
                 double time) {
   const auto complain = [&](const std::string& what) {

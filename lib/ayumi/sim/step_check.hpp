@@ -14,6 +14,10 @@ void check_world(const RobotModel& model, const World& world);
 /// Throws Error(usage) that names the part of the state that is not a number or has the wrong size.
 void check_state(const RobotModel& model, const RobotState& state);
 
+/// Throws Error(usage) that names the part of a plant's report that is not a number or has the
+/// wrong size.
+void check_report(const RobotModel& model, const StepReport& report);
+
 /// Throws Error(usage) that names the part of the input of one step of `dt` [s] that is not valid,
 /// `time` [s] after the plant's start.
 void check_step(const RobotModel& model, const Eigen::VectorXd& targets, const StepInput& input,
