@@ -126,7 +126,7 @@ TEST(KeptText, TheMirrorImageKeepsPostureLibraries) {
   expect_image(R"("posture": "up")", R"("posture": "up")");
   expect_image(R"("posture": "point_left")", R"("posture": "point_right")");
   expect_image(R"("posture": "lean")", R"("posture": "lean_mirrored")",
-               ",\n  \"postures\": {\"lean_mirrored\": {\"l_elbow\": -40, \"r_elbow\": -20}}");
+               ",\n  \"postures\": { \"lean_mirrored\": { \"l_elbow\": -40, \"r_elbow\": -20 } }");
 }
 
 // Words that name a side stay as they are when a motion is mirrored: those of comments, and the
