@@ -32,8 +32,8 @@ TEST(Eigenvalues, OfACompanionMatrixAreItsRoots) {
 
 TEST(Eigenvalues, OfAMatrixThatIsNotFiniteAreNotFound) {
   Eigen::MatrixXd A = Eigen::MatrixXd::Identity(3, 3);
-  for (const double value : {std::numeric_limits<double>::infinity(),
-                             std::numeric_limits<double>::quiet_NaN()}) {
+  for (const double value :
+       {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
     A(1, 2) = value;
     EXPECT_FALSE(eigenvalues(A));
   }

@@ -176,8 +176,7 @@ DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
   if (poles) names = {"k", "d"};
   for (const auto& [name, field] : fields) names.push_back(name);
   auto set = [&](const std::string& name, double value, const auto& refuse) {
-    if (const std::string reason = gain_out_of_range(name, value); !reason.empty())
-      refuse(reason);
+    if (const std::string reason = gain_out_of_range(name, value); !reason.empty()) refuse(reason);
     if (poles && name == "k")
       p.k = value;
     else if (poles && name == "d")

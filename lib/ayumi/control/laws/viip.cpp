@@ -161,8 +161,7 @@ ViipParams viip_params(const RobotModel& model, const ControllerSpec& spec) {
   std::vector<std::string> names;
   for (const auto& [name, field] : fields) names.push_back(name);
   auto set = [&](const std::string& name, double value, const auto& refuse) {
-    if (const std::string reason = gain_out_of_range(name, value); !reason.empty())
-      refuse(reason);
+    if (const std::string reason = gain_out_of_range(name, value); !reason.empty()) refuse(reason);
     const auto found = fields.find(name);
     if (found == fields.end())
       refuse("viip has no gain '" + name + "'" + text::suggestion(name, names) +
