@@ -46,10 +46,14 @@ std::map<std::string, double> read_pairs(const std::vector<std::string>& words,
     std::from_chars_result read{nullptr, std::errc::invalid_argument};
     if (equals != std::string::npos && equals > 0)
       read = std::from_chars(word.data() + equals + 1, end, value);
-    const bool too_large = read.ec == std::errc::result_out_of_range;
-    if (read.ptr != end || (read.ec != std::errc() && !too_large))
+    const bool cannot_hold = read.ec == std::errc::result_out_of_range;
+    if (read.ptr != end || (read.ec != std::errc() && !cannot_hold))
       fail(ErrorCode::usage, option + ": '" + word + "' does not have the form NAME=NUMBER");
-    if (too_large || !(std::abs(value) <= kLargestNumber))
+    if (cannot_hold)
+      fail(ErrorCode::usage,
+           option + ": the number of '" + word +
+               "' is too large or too near to 0; give 0, or a number from -1e6 to 1e6");
+    if (!(std::abs(value) <= kLargestNumber))
       fail(ErrorCode::usage,
            option + ": '" + word + "' is out of range; the number must be from -1e6 to 1e6");
     pairs[word.substr(0, equals)] = value;

@@ -497,6 +497,8 @@ AuthorAnswer AuthorSession::mirror(const OrderedJson& request) {
     if (const auto text =
             text_with_keyframe_mirrored(*shown->motion, shown->text, setting_, pointer))
       answer["text"] = *text;
+    // The text belongs to this version of the file. A change in the meantime must not be lost.
+    answer["hash"] = shown->hash;
     return {200, answer};
   });
 }

@@ -127,6 +127,11 @@ TEST(KeptText, TheMirrorImageKeepsPostureLibraries) {
   expect_image(R"("posture": "point_left")", R"("posture": "point_right")");
   expect_image(R"("posture": "lean")", R"("posture": "lean_mirrored")",
                ",\n  \"postures\": { \"lean_mirrored\": { \"l_elbow\": -40, \"r_elbow\": -20 } }");
+  // An included posture and its own image exchange their names, in any order of the keys.
+  const std::string both = text(R"("posture": "lean" }, {"t": 1.5, "posture": "lean_mirrored")",
+                                ",\n  \"postures\": { \"lean_mirrored\": { \"l_elbow\": -40, "
+                                "\"r_elbow\": -20 } }");
+  EXPECT_EQ(mirrored_text(mirrored_text(both)), both);
 }
 
 // Words that name a side stay as they are when a motion is mirrored: those of comments, and the

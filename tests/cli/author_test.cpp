@@ -818,6 +818,9 @@ TEST_F(AuthorServer, MirrorsAKeyframeInTheWordsOfItsAuthor) {
   EXPECT_EQ(answer["text"],
             replaced(R"({ "t": 0.71, "zmp": "center" })",
                      R"({ "t": 0.71, "zmp": "right", /* up */ "joints": {"r_elbow" :"-6*pi"} })"));
+  // If the file has changed since, the text is not written over the change.
+  ASSERT_EQ(server.edit(set("/phases/1/swing/lift", 0.017)).first, 200);
+  EXPECT_EQ(server.post("edit", {{"hash", answer["hash"]}, {"text", answer["text"]}}).first, 409);
 }
 
 TEST_F(AuthorServer, CapturesPosturesAndTheirMirrorImages) {

@@ -30,7 +30,8 @@ TEST(GainsCommand, ValuesOutOfRangeAreRefused) {
       {"ka=", "'ka=' does not have the form NAME=NUMBER"},
       {"ka=1x", "'ka=1x' does not have the form NAME=NUMBER"},
       {"=1", "'=1' does not have the form NAME=NUMBER"},
-      {"ka=1e999", "'ka=1e999' is out of range; the number must be from -1e6 to 1e6"},
+      {"ka=1e999", "the number of 'ka=1e999' is too large or too near to 0"},
+      {"ka=1e-400", "the number of 'ka=1e-400' is too large or too near to 0"},
       {"q=1e160", "'q=1e160' is out of range; the number must be from -1e6 to 1e6"},
       {"q=nan", "'q=nan' is out of range"}};
   for (const auto& [word, message] : cases) {

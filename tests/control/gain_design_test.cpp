@@ -239,8 +239,12 @@ TEST(GainDesign, RefusesWishesThatNoGainsFulfil) {
   EXPECT_EQ(refused(wishes), "a return time of 0 is not possible: it must be above 0 s");
   wishes.return_time = 1e-300;
   EXPECT_EQ(refused(wishes),
-            "the wishes need a gain that is not possible: gain kd is 1.667e+299; a gain must be "
+            "the wishes need a gain that is not possible: gain ks is 1.667e+299; a gain must be "
             "from 0 to 1e+06");
+  // Only the gains of wishes are judged: by the printed sign, D is negative.
+  DtadParams printed;
+  printed.as_printed = 1;
+  EXPECT_EQ(design_gains(6, {}, printed).as_printed, 1);
   wishes = {};
   wishes.zmp_filter = -1;
   EXPECT_EQ(refused(wishes), "a ZMP filter time of -1 is not possible: it must be above 0 s");

@@ -36,6 +36,7 @@ TEST(JsonReader, TheCharacterZeroIsRefused) {
   for (const std::string text : {"{\"a\":\n \"b\\u0000c\"}", "{\n  \"a\\u0000\": 1}"})
     EXPECT_NE(parse_error(text).find("a text has the character U+0000"), std::string::npos) << text;
   EXPECT_TRUE(parse_error("{\"a\":\n \"b\\u0000c\"}").starts_with("f.json:2:"));
+  EXPECT_TRUE(parse_error("{\"\\\\u0000\": 1,\n \"b\": \"\\u0000\"}").starts_with("f.json:2:"));
 }
 
 // Typing errors of an author, and the message about each: the line and column where the text must

@@ -177,6 +177,17 @@ TEST(ExportSafety, TheLimitsHoldForTheJointAndForItsEncoder) {
   }
 }
 
+// A home posture at a limit is where the motor board of the unit stops, so the ramp begins there.
+TEST(ExportSafety, AUnitWhoseHomePostureIsAtALimitCanBeExported) {
+  RobotDescription description = test::bus_description();
+  description.servos["b"].kp = 100;
+  description.servos["b"].offset = 0.4 * kDegree;
+  description.postures["home"]["b"] = -18 * kDegree;
+  const RobotModel unit(description);
+  const SafetyReport report = make_safe(unit, still(10, {10, 0, 0}), {}).report;
+  EXPECT_TRUE(report.safe) << report.violations.size();
+}
+
 TEST(ExportSafety, FindsMovingEnds) {
   const RobotModel robot = test::bus_robot();
   ReferenceTrajectory table = still(10, {10, 0, 0});

@@ -55,6 +55,16 @@ TEST(LeastSway, StaysInsideTheSupportAndSwaysLess) {
   }
 }
 
+// Each sample of a coarse plan is a point of the program, and steps of a finer one that do not
+// divide 10 ms are whole samples.
+TEST(LeastSway, WorksAtEveryServoPeriod) {
+  for (const double dt : {0.02, 0.008, 0.004}) {
+    const Pattern pattern = plan_of_shuffle(hoap1(), {.steps = 2, .stride = 0.02});
+    const CommandSeries plan = sample_plan(hoap1(), pattern, {.dt = dt});
+    EXPECT_TRUE(zmp_of_least_sway(hoap1(), plan, 0.01)) << dt;
+  }
+}
+
 TEST(LeastSway, AFlightHasNone) {
   CommandSeries plan = sample_plan(hoap1(), plan_of_shuffle(hoap1(), {.steps = 1}));
   plan.samples[plan.samples.size() / 2].support = Support::none;

@@ -157,7 +157,7 @@ class Search {
 
   // The search goes on beyond kPatience only after a change that leaves few errors.
   void note(Candidate candidate) {
-    if (helps(candidate, Measure::findings) && leaves_few(candidate)) trials_.go_on();
+    if (helps(candidate, Measure::findings) && leaves_few(candidate.outcome)) trials_.go_on();
     tried_.push_back(std::move(candidate));
   }
 
@@ -205,6 +205,7 @@ class Search {
     TrialOutcome least = found_;
     for (const TrialOutcome& outcome : without)
       if (is_better(outcome, least, measure)) least = outcome;
+    if (is_better(least, found_, measure) && leaves_few(least)) trials_.go_on();
     if (!found_.slight && share == 0) test_other_numbers(suspects, without);
     if (!is_better(least, found_, measure)) return false;
     size_t looked_at = 0;
@@ -368,18 +369,18 @@ class Search {
 
   /// Whether a change can be a cause. If n changes may still be named, including this one, it must
   /// remove at least 1/n of the errors (at least half if it is the last one).
-  bool leaves_few(const Candidate& c) const {
+  bool leaves_few(const TrialOutcome& outcome) const {
     if (found_.errors == kUnsampled) return true;
     const int changes = std::max(2, rounds_);  // the last one removes at least half
     const auto few = [&](int left, int of) { return left * changes <= of * (changes - 1); };
-    return c.outcome.errors == found_.errors ? few(c.outcome.findings, found_.findings)
-                                             : few(c.outcome.errors, found_.errors);
+    return outcome.errors == found_.errors ? few(outcome.findings, found_.findings)
+                                           : few(outcome.errors, found_.errors);
   }
 
   /// A value that is clearly wrong is examined in any case, after those values whose change leaves
   /// few errors.
   bool is_believable(const Candidate& c) const {
-    return leaves_few(c) ||
+    return leaves_few(c.outcome) ||
            (c.outcome.errors < found_.errors && c.hypothesis.rank == Rank::amount &&
             (c.hypothesis.change >= kSmallChange || c.hypothesis.size >= kLargeChange));
   }
@@ -411,7 +412,8 @@ class Search {
       }
     if (!std::all_of(sorted.begin(), sorted.end(), is_guess)) std::erase_if(sorted, is_guess);
     const auto key = [&](const Candidate& c) {
-      return std::tuple(!leaves_few(c), c.outcome.errors, c.hypothesis.rank, c.hypothesis.change);
+      return std::tuple(!leaves_few(c.outcome), c.outcome.errors, c.hypothesis.rank,
+                        c.hypothesis.change);
     };
     std::stable_sort(sorted.begin(), sorted.end(),
                      [&](const Candidate& a, const Candidate& b) { return key(a) < key(b); });

@@ -85,7 +85,6 @@ class Trials {
   bool left_out() const { return left_out_; }
 
  private:
-  int most() const;
   /// How many trials one quick trial of this pattern counts as.
   int quick_cost(const Pattern& pattern) const;
 
@@ -95,7 +94,8 @@ class Trials {
   int threads_ = 0, most_ = 0;
   int ticks_ = 1;     ///< ticks of the servo in one time step of a quick trial
   int leg_cost_ = 1;  ///< how many trials one trial counts as if a leg has fewer than six joints
-  int made_ = 0;
+  int made_ = 0;      ///< cost of the trials so far
+  int tried_ = 0;     ///< number of trials so far
   bool ended_ = false, left_out_ = false, exact_ = false, promising_ = false;
 };
 

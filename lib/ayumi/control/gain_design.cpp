@@ -139,7 +139,13 @@ DtadParams design_gains(double omega, const GainWishes& wishes, DtadParams param
       refuse("a forgetting time of", *wishes.forget, "it must be at least 0 s");
     params.offset_time = omega * *wishes.forget;
   }
-  for (const auto& [name, value] : gains_of(params))
+  for (const auto& [name, value] : {std::pair("k", params.k.value_or(0)),
+                                    {"d", params.d.value_or(0)},
+                                    {"ka", params.zmp_gain},
+                                    {"ks", params.pull_rate},
+                                    {"kd", params.pull_damping},
+                                    {"tau_z", params.zmp_filter},
+                                    {"washout", params.offset_time}})
     if (const std::string reason = gain_out_of_range(name, value); !reason.empty())
       fail(ErrorCode::usage, "the wishes need a gain that is not possible: " + reason);
   return params;

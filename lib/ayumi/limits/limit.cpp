@@ -1,6 +1,7 @@
 #include "ayumi/limits/limit.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/largest_number.hpp"
@@ -82,9 +83,9 @@ Tolerances tolerances(const CheckOptions& options) {
       fail(ErrorCode::usage, "there is no kind of finding '" + name +
                                  "'; `ayumi check --tolerances` lists the kinds" +
                                  text::suggestion(name, finding_kind_names()));
-    if (!(value >= 0 && value <= kLargestNumber))
+    if (!(std::abs(value) <= kLargestNumber))
       fail(ErrorCode::usage, "tolerance '" + name + "': " + text::exact(value) +
-                                 " is out of range; a tolerance must be from 0 to " +
+                                 " is out of range; its size must be at most " +
                                  text::brief(kLargestNumber));
     result[*kind] = value;
   }

@@ -308,9 +308,16 @@ LaidMotion laid(const RobotModel& model, const TargetRows& targets, const Safety
   targets.row(0, plan.target);
   plan.from = plan.target;
   if (options.from != "first") {
-    const Eigen::VectorXd posture = model.posture(options.from);
-    for (int dof = 0; dof < model.dof_count(); ++dof)
-      plan.from[columns[static_cast<size_t>(dof)]] = posture[dof];
+    // Where the posture is at a limit, the encoder of a unit with a zero may not reach it. The
+    // robot then stands at the limit of its motor board.
+    const Eigen::VectorXd posture = model.posture(options.from), zeros = encoder_zeros(model);
+    for (int dof = 0; dof < model.dof_count(); ++dof) {
+      const Dof& joint = model.dofs()[static_cast<size_t>(dof)];
+      const TargetRange range = target_range(joint, zeros[dof], 0);
+      const bool reaches = !joint.limited || range.lower > range.upper;
+      plan.from[columns[static_cast<size_t>(dof)]] =
+          reaches ? posture[dof] : std::clamp(posture[dof], range.lower, range.upper);
+    }
   }
   plan.duration =
       ramp_duration(plan.target - plan.from, speed_limits(model, columns, options), options);

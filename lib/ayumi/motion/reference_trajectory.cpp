@@ -28,8 +28,9 @@ ReferenceRow between(const ReferenceRow& a, const ReferenceRow& b, double u) {
 ReferenceTrajectory resampled(const ReferenceTrajectory& table, double dt) {
   // Definition: a time belongs to a row if it is nearer than this to the row, as a fraction of dt.
   constexpr double kOnRow = 1e-6;
-  // Largest number of rows. Chosen: the longest pattern, 3600 s, at 10 kHz.
-  constexpr double kMostRows = 36e6;
+  // Largest number of rows. Chosen: the longest pattern, 3600 s, at 1 kHz, as for the samples of a
+  // pattern; more would exhaust the memory.
+  constexpr double kMostRows = 4e6;
   const double rows = static_cast<double>(table.rows.size()) * table.dt / dt;
   if (!(dt > 0 && rows <= kMostRows && std::isfinite(dt)))
     fail(ErrorCode::usage, "a table cannot have rows every " + text::exact(dt) +

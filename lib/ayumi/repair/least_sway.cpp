@@ -80,8 +80,10 @@ GridPoint grid_point(const RobotModel& model, const CommandSeries& plan, long k)
 // At a change of support, the ZMP has to be inside both supports.
 std::vector<GridPoint> grid_of(const RobotModel& model, const CommandSeries& plan) {
   const long last = static_cast<long>(plan.samples.size()) - 1;
-  const double step = policy::generation::kZmpStep;
-  const long count = std::max(2L, std::lround(static_cast<double>(last) * plan.dt / step));
+  // Several samples of a fine plan make one step; of a coarse plan, each sample is a point.
+  const long step = std::max(1L, std::lround(policy::generation::kZmpStep / plan.dt));
+  const long count = std::min(
+      last, std::max(2L, std::lround(static_cast<double>(last) / static_cast<double>(step))));
   std::vector<GridPoint> grid;
   for (long i = 0; i <= count; ++i) grid.push_back(grid_point(model, plan, i * last / count));
   for (size_t i = 1; i + 1 < grid.size(); ++i)

@@ -66,12 +66,6 @@ bool has_only_goals(const Pattern& pattern, double dt) {
   return !rows && std::none_of(pattern.keyframes.begin(), pattern.keyframes.end(), on_the_way);
 }
 
-bool has_zmp_keys(const Pattern& pattern) {
-  return (pattern.table && !pattern.table->zmp.empty()) ||
-         std::any_of(pattern.keyframes.begin(), pattern.keyframes.end(),
-                     [](const Keyframe& key) { return key.zmp.has_value(); });
-}
-
 // The starts of a plan, and what they are judged by.
 class PlanStarts {
  public:
@@ -183,7 +177,7 @@ GeneratedMotion generate(const RobotModel& model, const Pattern& pattern, const 
   const PlannedCog follows = may_lead ? PlannedCog::zmp : PlannedCog::keys;
   const bool lacks_joints =
       InverseKinematics(model, default_posture(model, pattern)).lacks_joints();
-  if (lacks_joints && only_goals && !has_zmp_keys(pattern))
+  if (lacks_joints && only_goals)
     for (const double smooth : policy::generation::kSwaySmooth) {
       if (start.violation == 0) break;
       const auto zmp = zmp_of_least_sway(model, plan, smooth, progress);

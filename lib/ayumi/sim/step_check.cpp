@@ -106,11 +106,18 @@ void check_report(const RobotModel& model, const StepReport& report) {
   check("a torque of", report.torque);
   check("an angle of a motor of", report.motor);
   check("a rate of a motor of", report.motor_rate);
-  for (const std::vector<SoleForce>& sole : report.soles)
-    for (const SoleForce& contact : sole) {
+  for (const Side side : {Side::left, Side::right}) {
+    const std::vector<SoleForce>& forces = report.soles[static_cast<size_t>(side)];
+    const size_t corners = model.sole(side).polygon.size();
+    if (forces.size() != corners)
+      fail(ErrorCode::usage, model.name() + ": the plant reports " + std::to_string(forces.size()) +
+                                 " forces at the " + name_of(side) + " sole, which has " +
+                                 std::to_string(corners) + " corners");
+    for (const SoleForce& contact : forces) {
       check("a place of a sole at", contact.position);
       check("a force at a sole of", contact.force);
     }
+  }
 }
 
 void check_step(const RobotModel& model, const VectorXd& targets, const StepInput& input, double dt,

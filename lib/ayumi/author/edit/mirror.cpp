@@ -156,15 +156,17 @@ class Mirror {
   void mirror_postures(Pattern& result) const {
     for (auto& [name, joints] : result.postures)
       if (!is_included(name)) joints = of(joints, "/postures/" + json_pointer_token(name));
-    std::map<std::string, std::string> images;
-    const auto mirror_use = [&](std::string& name) {
-      const auto [image, is_new] = images.emplace(name, "");
-      if (is_new) image->second = image_of_used(result, name);
-      name = image->second;
-    };
-    mirror_use(result.default_posture);
+    std::vector<std::string*> uses = {&result.default_posture};
     for (Keyframe& key : result.keyframes)
-      if (key.posture) mirror_use(*key.posture);
+      if (key.posture) uses.push_back(&*key.posture);
+    // An own posture may be the image of an included one. It goes first, because its name is then
+    // free for the image of the included one.
+    std::map<std::string, std::string> images;
+    for (const bool included : {false, true})
+      for (const std::string* const name : uses)
+        if (is_included(*name) == included && !images.contains(*name))
+          images[*name] = image_of_used(result, *name);
+    for (std::string* const name : uses) *name = images.at(*name);
   }
 
   // The name of the image of a posture that the pattern uses.

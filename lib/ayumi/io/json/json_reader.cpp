@@ -128,6 +128,16 @@ class DocumentBuilder : public nlohmann::json_sax<Json> {
   std::string duplicate_;
 };
 
+// Where an escaped U+0000 stands. After an odd number of backslashes, "u0000" is such an escape.
+size_t place_of_zero(const std::string& bytes) {
+  for (size_t at = bytes.find("u0000"); at != std::string::npos; at = bytes.find("u0000", at + 1)) {
+    size_t backslashes = 0;
+    while (backslashes < at && bytes[at - 1 - backslashes] == '\\') ++backslashes;
+    if (backslashes % 2 == 1) return at - 1;
+  }
+  return 0;
+}
+
 }  // namespace
 
 Json parse_json(const std::string& bytes, const std::string& file, ErrorCode code) {
@@ -165,7 +175,7 @@ Json parse_json(const std::string& bytes, const std::string& file, ErrorCode cod
                  "arrays and objects are nested more than " + std::to_string(kDeepestNesting) +
                      " levels deep; correct the brackets");
   if (builder.has_zero())
-    fail_in_text(code, file, bytes, bytes.find("\\u0000"),
+    fail_in_text(code, file, bytes, place_of_zero(bytes),
                  "a text has the character U+0000, which would end a file name or a message; "
                  "remove it");
   if (!builder.duplicate().empty())

@@ -62,7 +62,6 @@ RepairPreferences read_repair(const JsonNode& node, int keyframes, PatternScope&
     for (const auto& [joint, weight] : weights->members()) {
       preferences.weights[joint] = read_number(weight, scope);
       if (preferences.weights[joint] <= 0)
-
         weight.complain("a weight must be above 0, but it is " +
                         text::exact(preferences.weights[joint]) +
                         "; to keep the joint still, lock the joint");

@@ -377,7 +377,7 @@ class Page {
     const { status, value } = await this.server.ask("POST", "mirror", { pointer });
     if (status !== 200) return this.say(value.message || "The keyframe cannot be mirrored.");
     if (!value.edits.length) return this.say("The keyframe is its own mirror image.");
-    return value.text ? this.write(value.text) : this.edit(value.edits);
+    return value.text ? this.write(value.text, value.hash) : this.edit(value.edits);
   }
 
   select(thing, time) {
@@ -503,8 +503,9 @@ class Page {
     return this.post("edit", (hash) => ({ hash, edits: all }), all.some((one) => one.kind !== "set"));
   }
 
-  write(text) {
-    return this.post("edit", (hash) => ({ hash, text }), true);
+  /// Replaces the text; `base` is the hash of the version from which it was made, if not the last.
+  write(text, base) {
+    return this.post("edit", (hash) => ({ hash: base ?? hash, text }), true);
   }
 
   post(path, bodyWith, moves) {
