@@ -899,18 +899,17 @@ size_t keyframe_at(const Pattern& pattern, const std::string& pointer) {
   fail(ErrorCode::usage, "the pattern has no keyframe " + pointer);
 }
 
-Pattern with_keyframe_mirrored(const AuthorMotion& motion, const Pattern& pattern, size_t i) {
-  return with_key_edited(motion.task.robot, pattern,
-                         {.at = pattern.keyframes[i].t, .mirror = true});
-}
-
 }  // namespace
 
-std::vector<PatternEdit> mirrored_keyframe(const AuthorMotion& motion, const std::string& pointer) {
+MirroredKeyframe mirrored_keyframe(const AuthorMotion& motion, const std::string& text,
+                                   const AuthorSetting& setting, const std::string& pointer) {
   Pattern before = motion.task.pattern;
+  // A table would get another name, and parameters that are set from outside would be written.
+  const bool may_keep_text = !before.table && setting.set.empty();
   before.table.reset();
   const size_t i = keyframe_at(before, pointer);
-  const Pattern after = with_keyframe_mirrored(motion, before, i);
+  const Pattern after =
+      with_key_edited(motion.task.robot, before, {.at = before.keyframes[i].t, .mirror = true});
   const OrderedJson& written = motion.document.at(OrderedJson::json_pointer(pointer));
   OrderedJson from = written_keyframes(before).at(i), to = written_keyframes(after).at(i);
   for (OrderedJson* const frame : {&from, &to}) {
@@ -922,21 +921,12 @@ std::vector<PatternEdit> mirrored_keyframe(const AuthorMotion& motion, const std
     (*frame)["joints"] = frame->at("posture");
     frame->erase("posture");
   }
-  std::vector<PatternEdit> edits;
-  difference(from, to, pointer, written, edits);
-  return edits;
-}
-
-std::optional<std::string> text_with_keyframe_mirrored(const AuthorMotion& motion,
-                                                       const std::string& text,
-                                                       const AuthorSetting& setting,
-                                                       const std::string& pointer) {
-  const Pattern& before = motion.task.pattern;
-  // A table would get another name, and parameters that are set from outside would be written.
-  if (before.table || !setting.set.empty()) return std::nullopt;
-  const Pattern after = with_keyframe_mirrored(motion, before, keyframe_at(before, pointer));
-  const auto own = rewritten(text, before, after, {.out = setting.file});
-  return own ? std::optional(own->text) : std::nullopt;
+  MirroredKeyframe result;
+  difference(from, to, pointer, written, result.edits);
+  if (result.edits.empty() || !may_keep_text) return result;
+  if (auto own = rewritten(text, before, after, {.out = setting.file}))
+    result.text = std::move(own->text);
+  return result;
 }
 
 }  // namespace ayumi::app

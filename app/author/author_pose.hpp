@@ -41,17 +41,18 @@ PoseAnswer posed(const AuthorMotion& motion, const std::string& text, const Auth
 std::vector<PatternEdit> captured(const AuthorMotion& motion, double time, const std::string& name,
                                   bool mirror, const std::map<std::string, double>& angles = {});
 
-/// The edits that exchange left and right in the keyframe at this pointer; only values that change
-/// are written. Throws Error(usage) for a pointer without a keyframe, and the same errors as
-/// captured().
-std::vector<PatternEdit> mirrored_keyframe(const AuthorMotion& motion, const std::string& pointer);
+struct MirroredKeyframe {
+  /// The edits that exchange left and right; only values that change are written. Empty if the
+  /// keyframe is its own mirror image.
+  std::vector<PatternEdit> edits;
+  /// The whole text with this change in the author's own words: expressions, comments and spacing
+  /// inside the keyframe stay. Empty if the text cannot express this.
+  std::optional<std::string> text = {};
+};
 
-/// The text with this keyframe mirrored in the author's own words: expressions, comments and
-/// spacing inside the keyframe stay. `text` is that of the motion. Nothing if the text cannot
-/// express this; mirrored_keyframe() then can. Throws the same errors as mirrored_keyframe().
-std::optional<std::string> text_with_keyframe_mirrored(const AuthorMotion& motion,
-                                                       const std::string& text,
-                                                       const AuthorSetting& setting,
-                                                       const std::string& pointer);
+/// Exchanges left and right in the keyframe at this pointer. `text` is that of the motion. Throws
+/// Error(usage) for a pointer without a keyframe, and the same errors as captured().
+MirroredKeyframe mirrored_keyframe(const AuthorMotion& motion, const std::string& text,
+                                   const AuthorSetting& setting, const std::string& pointer);
 
 }  // namespace ayumi::app

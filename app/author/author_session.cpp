@@ -492,11 +492,10 @@ AuthorAnswer AuthorSession::mirror(const OrderedJson& request) {
     const Shown shown = view();
     if (!shown->motion || shown->error)
       return refused("the text of the pattern has an error; correct it first");
-    const std::string pointer = request.at("pointer");
-    OrderedJson answer = {{"edits", edits_json(mirrored_keyframe(*shown->motion, pointer))}};
-    if (const auto text =
-            text_with_keyframe_mirrored(*shown->motion, shown->text, setting_, pointer))
-      answer["text"] = *text;
+    const MirroredKeyframe mirrored =
+        mirrored_keyframe(*shown->motion, shown->text, setting_, request.at("pointer"));
+    OrderedJson answer = {{"edits", edits_json(mirrored.edits)}};
+    if (mirrored.text) answer["text"] = *mirrored.text;
     // The text belongs to this version of the file. A change in the meantime must not be lost.
     answer["hash"] = shown->hash;
     return {200, answer};

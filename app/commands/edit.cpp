@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "ayumi/author/edit/gait_cycle.hpp"
@@ -359,40 +360,60 @@ void retime(Context& context, const EditCommand& options) {
                in_json(scale, before, force, result, found));
 }
 
-// Two motions in sequence as one sampled motion. The result has keys if keys can express the motion
-// and it is as consistent with them; otherwise it is a table. `reason` receives the reason for a
-// table.
-Pattern joined_pattern(const Context& context, const EditCommand& options, const Task& first,
-                       const MotionPart& second, double over, CommandSeries& series,
-                       std::string& reason) {
-  const MotionPart one{first.pattern, first.series};
-  const auto sampled = [&](const Pattern& pattern) {
-    return sample(first.robot, pattern, {.dt = first.series.dt}, context.progress());
-  };
+// A pattern and its samples.
+struct Sampled {
+  Pattern pattern;
+  CommandSeries series;
+
+  MotionPart part() const { return {pattern, series}; }
+};
+
+Sampled sampled(const Context& context, const Task& task, Pattern pattern) {
+  CommandSeries series = sample(task.robot, pattern, {.dt = task.series.dt}, context.progress());
+  return {std::move(pattern), std::move(series)};
+}
+
+// Two motions in sequence. The result has keys if keys can express the motion and it is as
+// consistent with them; otherwise it is a table. `reason` receives the reason for a table. Robot
+// and tolerances are those of `task`.
+Sampled joined_motion(const Context& context, const EditCommand& options, const Task& task,
+                      const MotionPart& first, const MotionPart& second, double over,
+                      std::string& reason) {
   const auto with_table = [&] {
-    Pattern pattern = joined(first.robot, one, second, over, table_beside(options.out).string());
-    series = sampled(pattern);
-    return pattern;
+    return sampled(context, task,
+                   joined(task.robot, first, second, over, table_beside(options.out).string()));
   };
   if (options.as_table) return with_table();
   try {
-    Pattern keyed = chained(first.robot, one, second, over);
-    series = sampled(keyed);
-    const CheckOptions check = check_options(first, options.tolerances);
-    if (check_consistency(first.robot, series, check).consistent) return keyed;
-    CommandSeries of_keys = std::move(series);
-    Pattern tabled = with_table();
-    if (!check_consistency(first.robot, series, check).consistent) {
-      series = std::move(of_keys);
-      return keyed;
-    }
+    Sampled keyed = sampled(context, task, chained(task.robot, first, second, over));
+    const CheckOptions check = check_options(task, options.tolerances);
+    if (check_consistency(task.robot, keyed.series, check).consistent) return keyed;
+    Sampled tabled = with_table();
+    if (!check_consistency(task.robot, tabled.series, check).consistent) return keyed;
     reason = "the joined motion passes the check as a table, but would fail the check with keys";
     return tabled;
   } catch (const Error& error) {
     if (error.code() != ErrorCode::bad_pattern) throw;
-    Pattern tabled = with_table();  // throws the reason if samples cannot be joined either
+    Sampled tabled = with_table();  // throws the reason if samples cannot be joined either
     reason = error.what();
     return tabled;
+  }
+}
+
+void replace_motion(Task& task, Sampled motion) {
+  task.pattern = std::move(motion.pattern);
+  task.series = std::move(motion.series);
+}
+
+// The motion `times` times. join(a, b) is b after a. Each join samples the whole motion, so the
+// motion is doubled again and again: then the time is proportional to the length of the result.
+template <typename Join>
+Sampled repeated(Sampled power, int times, const Join& join) {
+  std::optional<Sampled> result;
+  for (int left = times;; power = join(power, power)) {
+    if (left % 2 == 1) result = result ? join(*result, power) : power;
+    left /= 2;
+    if (left == 0) return *std::move(result);
   }
 }
 
@@ -423,11 +444,8 @@ void join(Context& context, const EditCommand& options) {
                "'; give patterns of the same robot");
     joins.push_back(input.series.duration());
     add_caution(input.caution, next.caution);
-    CommandSeries series;
-    Pattern both = joined_pattern(context, options, input, {next.pattern, next.series},
-                                  options.over, series, reason);
-    input.pattern = std::move(both);
-    input.series = std::move(series);
+    replace_motion(input, joined_motion(context, options, input, {input.pattern, input.series},
+                                        {next.pattern, next.series}, options.over, reason));
   }
   const Edited edited = in_own_text(options, given, input.pattern, 1, others);
   write_edited(context, options, edited, check_edited(context, options, input, edited),
@@ -473,29 +491,20 @@ void loop_cycle(Context& context, const EditCommand& options) {
   const auto part = [&](long first, long last) {
     return cut(input.robot, {input.pattern, closed}, first, last, table);
   };
-  const auto sampled = [&](const Pattern& pattern) {
-    return sample(input.robot, pattern, {.dt = input.series.dt}, context.progress());
+  const auto join = [&](const Sampled& a, const Sampled& b) {
+    return sampled(context, input, joined(input.robot, a.part(), b.part(), 0, table));
   };
-  std::vector<Pattern> parts(static_cast<size_t>(options.times), part(cycle.begin, cycle.end));
+  Sampled motion =
+      repeated(sampled(context, input, part(cycle.begin, cycle.end)), options.times, join);
   if (!options.alone) {
-    parts.insert(parts.begin(), part(0, cycle.begin));
-    parts.push_back(part(cycle.end, static_cast<long>(input.series.samples.size()) - 1));
+    const long last = static_cast<long>(input.series.samples.size()) - 1;
+    motion = join(sampled(context, input, part(0, cycle.begin)), motion);
+    motion = join(motion, sampled(context, input, part(cycle.end, last)));
   }
-  // Neighbours are joined in pairs, so that a motion of many parts is not sampled as often as it
-  // has parts.
-  while (parts.size() > 1) {
-    std::vector<Pattern> pairs;
-    for (size_t i = 0; i + 1 < parts.size(); i += 2)
-      pairs.push_back(joined(input.robot, {parts[i], sampled(parts[i])},
-                             {parts[i + 1], sampled(parts[i + 1])}, 0, table));
-    if (parts.size() % 2 == 1) pairs.push_back(std::move(parts.back()));
-    parts = std::move(pairs);
-  }
-  const Pattern& all = parts.front();
   const double dt = input.series.dt;
   const double begin = static_cast<double>(cycle.begin) * dt;
   const double end = static_cast<double>(cycle.end) * dt;
-  const Edited edited = in_own_text(options, given, all);
+  const Edited edited = in_own_text(options, given, motion.pattern);
   write_edited(
       context, options, edited, check_edited(context, options, input, edited),
       "  the cycle is from " + text::fixed(begin, 3) + " to " + text::fixed(end, 3) +
@@ -510,35 +519,6 @@ void loop_cycle(Context& context, const EditCommand& options) {
            {"turn_rad", cycle.turn},
            {"gap", gap_json(cycle.gap)},
            {"keys_kept", false}});
-}
-
-// Appends `next` to the motion.
-void append(const Context& context, const EditCommand& options, Task& motion,
-            const MotionPart& next, std::string& reason) {
-  CommandSeries series;
-  Pattern both = joined_pattern(context, options, motion, next, 0, series, reason);
-  motion.pattern = std::move(both);
-  motion.series = std::move(series);
-}
-
-// Repeats a closed motion options.times times. Each join samples the whole motion, so the motion is
-// doubled again and again: then the time is proportional to the length of the result.
-void repeat(const Context& context, const EditCommand& options, Task& motion, std::string& reason) {
-  Task power = motion;  // 1, 2, 4, ... times the motion
-  bool begun = false;
-  for (int left = options.times; left > 0; left /= 2) {
-    if (left % 2 == 1) {
-      if (begun)
-        append(context, options, motion, {power.pattern, power.series}, reason);
-      else
-        motion = power;
-      begun = true;
-    }
-    if (left > 1) {
-      const Task half = power;
-      append(context, options, power, {half.pattern, half.series}, reason);
-    }
-  }
 }
 
 // Makes the end equal to the beginning, by a transition if they differ, and repeats the motion.
@@ -581,10 +561,8 @@ void loop(Context& context, const EditCommand& options) {
       fail(ErrorCode::bad_pattern, {options.pattern},
            "joints move when the motion begins, so no transition can lead to its beginning; "
            "let the motion begin at rest (edit ramp --in)");
-    CommandSeries series;
-    input.pattern =
-        joined_pattern(context, options, input, {still, held}, options.over, series, reason);
-    input.series = std::move(series);
+    replace_motion(input, joined_motion(context, options, input, {input.pattern, input.series},
+                                        {still, held}, options.over, reason));
   }
   const LoopGap closed = loop_gap(input.robot, {input.pattern, input.series});
   if (!closed.closed)
@@ -592,7 +570,10 @@ void loop(Context& context, const EditCommand& options) {
          "the end of the motion still differs from its beginning: " + gap_and_limits(closed) +
              "; edit bake and edit ramp can bring both ends to rest in one "
              "posture");
-  repeat(context, options, input, reason);
+  const auto join = [&](const Sampled& a, const Sampled& b) {
+    return joined_motion(context, options, input, a.part(), b.part(), 0, reason);
+  };
+  replace_motion(input, repeated({input.pattern, input.series}, options.times, join));
   const Edited edited = in_own_text(options, given, input.pattern);
   write_edited(context, options, edited, check_edited(context, options, input, edited),
                std::string("  the end of the motion is the same as its beginning") +

@@ -12,6 +12,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/motor_board.hpp"
 #include "ayumi/io/formats/hoap.hpp"
+#include "ayumi/io/import_pattern.hpp"
 #include "ayumi/io/run/results_json.hpp"
 #include "ayumi/io/run/run_folder.hpp"
 #include "ayumi/io/run/run_output.hpp"
@@ -77,7 +78,7 @@ bool has_head(const std::string& bytes) {
 
 RobotModel robot_of(const ReplayCommand& options, const Context& context,
                     const std::string& bytes) {
-  if (bytes.find("\"ayumi.pattern/") != std::string::npos)
+  if (is_pattern_text(bytes))
     fail(ErrorCode::bad_file, {options.file},
          "this is a pattern, but replay needs a table; `ayumi export` writes the table of a "
          "pattern");

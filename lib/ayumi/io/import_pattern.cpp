@@ -77,9 +77,13 @@ ImportedPattern of_rows(const RobotModel& model, ImportedMotion imported,
 
 }  // namespace
 
+bool is_pattern_text(const std::string& bytes) {
+  return bytes.find("\"ayumi.pattern/") != std::string::npos;
+}
+
 ImportedPattern import_pattern(const std::string& bytes, const std::string& file,
                                const RobotModel& model, const PatternImport& options) {
-  if (bytes.find("\"ayumi.pattern/") != std::string::npos)
+  if (is_pattern_text(bytes))
     fail(ErrorCode::bad_file, {file},
          "this is a pattern already; import reads motions in the formats " +
              text::join(read_format_names(), ", "));

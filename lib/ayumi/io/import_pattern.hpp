@@ -35,6 +35,9 @@ struct ImportedPattern {
   std::string sequence = {};  ///< bytes that are kept beside the pattern; "" if there are none
 };
 
+/// Whether the bytes of a file that should hold a motion or a table are those of a pattern.
+bool is_pattern_text(const std::string& bytes);
+
 /// `bytes` are the content of `file`. Throws Error(bad_file) that names file, place and remedy.
 ImportedPattern import_pattern(const std::string& bytes, const std::string& file,
                                const RobotModel& model, const PatternImport& options = {});

@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <limits>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/number_slips.hpp"
+#include "ayumi/base/regular_file.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/json/document_format.hpp"
 #include "ayumi/io/pattern/pattern_scope.hpp"
@@ -90,12 +92,11 @@ LibraryFile read_library(const fs::path& path, Pattern& pattern) {
 // The file that a value of the pattern names.
 fs::path named_file(const JsonNode& name, const fs::path& folder) {
   fs::path path = folder / name.string();
-  std::error_code ignored;
-  if (!fs::exists(path, ignored)) name.complain(path.string() + ": no such file");
-  if (!fs::is_regular_file(path, ignored))
-    name.complain(path.string() + ": this is a " +
-                  (fs::is_directory(path, ignored) ? "folder" : "device or a named pipe") +
-                  ", but a file is needed");
+  try {
+    const RegularFile file(path, std::numeric_limits<size_t>::max());
+  } catch (const Error& error) {
+    name.complain(error.what());
+  }
   return path;
 }
 
