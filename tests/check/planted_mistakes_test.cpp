@@ -135,10 +135,6 @@ std::vector<Mistaken> make_list() {
       [](Pattern& p) { p.keyframes[2].cog_height = 2.15; });
   add("a COG height of 600 mm", tall(), strides, "/defaults/cog_height: .*in mm \\(0.6 m\\)",
       [](Pattern& p) { p.cog_height = 600; });
-  add("times in ms", small(), steps, "/phases: .*read as ms", [](Pattern& p) {
-    for (Phase& phase : p.phases) phase.until *= 1000;
-    for (Keyframe& key : p.keyframes) key.t *= 1000;
-  });
   add("a ZMP key under the wrong foot", small(), steps,
       "/phases/3: the robot stands on the right foot, but /keyframes/4 puts the ZMP under the left",
       [](Pattern& p) { p.keyframes[4].zmp->place = ZmpKey::Place::left; });
