@@ -739,12 +739,12 @@ void add_export(Command& app, Context& context) {
       ->add_option("--ramp", options->ramp,
                    "Shortest duration of the approach ramp before the motion [s] (default: 2; 0 "
                    "for an imported sequence whose motion is unchanged).")
-      ->check(number_within(0.0, SafetyOptions::kLongestRest));
+      ->check(number_within(SafetyOptions::kRest));
   command
       ->add_option("--hold", options->hold,
                    "Time for which the last posture is held [s] (default: 0.5; 0 for an imported "
                    "sequence whose motion is unchanged).")
-      ->check(number_within(0.0, SafetyOptions::kLongestRest));
+      ->check(number_within(SafetyOptions::kRest));
   Option* interval =
       command
           ->add_option(

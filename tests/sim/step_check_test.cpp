@@ -106,5 +106,26 @@ TEST(StepCheck, RefusesAWorldThatIsNone) {
   expect("friction", World{.friction = -0.1});
 }
 
+TEST(StepCheck, RefusesAReportThatIsNone) {
+  const RobotModel model(test::random_tree(3, 6, false));
+  for (const double bad : kBad) {
+    const auto expect = [&](const std::string& place,
+                            const std::function<void(StepReport&)>& spoil) {
+      StepReport report;
+      report.torque = VectorXd::Zero(model.dof_count());
+      report.soles[0].resize(1);
+      check_report(model, report);
+      spoil(report);
+      const std::string text =
+          test::error_message([&] { check_report(model, report); }, ErrorCode::usage);
+      EXPECT_NE(text.find(place), std::string::npos) << text;
+    };
+    expect("a torque of", [&](StepReport& r) { r.torque[0] = bad; });
+    expect("a force at a sole of", [&](StepReport& r) { r.soles[0][0].force.z() = bad; });
+    expect("a place of a sole at", [&](StepReport& r) { r.soles[0][0].position.x() = bad; });
+    expect("a gap of a sole of", [&](StepReport& r) { r.soles[0][0].gap = bad; });
+  }
+}
+
 }  // namespace
 }  // namespace ayumi

@@ -578,6 +578,9 @@ std::vector<std::string> motor_types(const RobotModel& model) {
 Identification identify(const RobotModel& model, const RecordedMotion& motion,
                         const IdentifyOptions& options, const std::string& place,
                         const Progress& progress) {
+  if (options.longest_lag != 0)
+    require_within("the longest lag of a servo", options.longest_lag, IdentifyOptions::kLongestLag);
+  require_within("the number of threads", options.threads, kThreadBounds);
   const double longest = options.longest_lag > 0 ? options.longest_lag : longest_lag(model);
   require_answer(model, motion.command, motion.measured, longest, place);
   report(progress, {"loads", 0, ""});

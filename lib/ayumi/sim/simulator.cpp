@@ -47,7 +47,8 @@ constexpr double kZmpMinLoad = 0.02;
 const CommandSeries& checked(const CommandSeries& series, const SimulateOptions& options) {
   if (series.samples.empty())
     fail(ErrorCode::bad_pattern, "the motion has no samples; sample a pattern first");
-  if (options.substeps < 1) fail(ErrorCode::usage, "substeps must be at least 1");
+  require_within("the number of integrator steps per servo period", options.substeps,
+                 SimulateOptions::kSubsteps);
   return series;
 }
 

@@ -7,12 +7,18 @@
 #include <vector>
 
 #include "ayumi/author/import/contact_reconstruction.hpp"
+#include "ayumi/base/bounds.hpp"
 #include "ayumi/model/encoder_angles.hpp"
 #include "ayumi/motion/table_caution.hpp"
 
 namespace ayumi {
 
 struct ImportOptions {
+  /// Bounds of rate, where it is not 0, and of smooth. Chosen: a row in more than a second shows no
+  /// motion, one in less than 0.01 ms is no tick of a servo, and a change of more than 5 degrees
+  /// makes another motion.
+  static constexpr Bounds kRate = {1, 1e5, "1/s"}, kSmooth = {0, 5, "deg"};
+
   std::string format{};   ///< name of motion_formats(); "" if the content decides
   bool degrees = false;   ///< unit of angles if the format does not define it
   double rate = 0;        ///< rate of rows without times [1/s]
