@@ -10,6 +10,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/sim/plant/plant.hpp"
+#include "tests/support/biped.hpp"
 #include "tests/support/block.hpp"
 #include "tests/support/error_message.hpp"
 #include "tests/support/random_robot.hpp"
@@ -107,13 +108,14 @@ TEST(StepCheck, RefusesAWorldThatIsNone) {
 }
 
 TEST(StepCheck, RefusesAReportThatIsNone) {
-  const RobotModel model(test::random_tree(3, 6, false));
+  const RobotModel model = test::biped();
   for (const double bad : kBad) {
     const auto expect = [&](const std::string& place,
                             const std::function<void(StepReport&)>& spoil) {
       StepReport report;
       report.torque = VectorXd::Zero(model.dof_count());
-      report.soles[0].resize(1);
+      for (const Side side : {Side::left, Side::right})
+        report.soles[static_cast<size_t>(side)].resize(model.sole(side).polygon.size());
       check_report(model, report);
       spoil(report);
       const std::string text =
