@@ -47,11 +47,6 @@ void require_bounds(const PatternImport& options) {
                  ContactThresholds::kSpeed);
   require_within("the smallest vertical force of a contact", contact.load,
                  ContactThresholds::kLoad);
-  if (options.reading.rate != 0)
-    require_within("the rate of the rows", options.reading.rate, ImportOptions::kRate);
-  if (options.reading.smooth)
-    require_within("the largest change by smoothing", *options.reading.smooth,
-                   ImportOptions::kSmooth);
 }
 
 ImportedPattern of_keys(ImportedKeys keys, const PatternImport& options) {

@@ -68,7 +68,7 @@ std::optional<ImportedKeys> read_key_poses(const std::string& bytes, const std::
 /// The rows of a file as they are, evenly spaced, with the columns of the robot's joints. Joints
 /// are mapped by their names or the robot's aliases, or by their order if the options say so.
 /// Values that are not set, and rows between key postures, are interpolated. Throws Error(bad_file)
-/// that names the format, the place and the remedy.
+/// that names the format, the place and the remedy, and Error(usage) for options out of bounds.
 ImportedMotion read_motion_rows(const std::string& bytes, const std::string& file,
                                 const RobotModel& model, const ImportOptions& options = {});
 
