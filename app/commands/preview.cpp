@@ -277,7 +277,7 @@ void add_picture_options(Command& command, PreviewOptions& options) {
   command
       .add_option("--exposures", options.exposures,
                   "Number of postures that are drawn into one .png, evenly spaced in time.")
-      ->check(whole_number_within(1, 100));
+      ->check(whole_number_within(StripOptions::kExposures));
   command
       .add_option("--columns", options.columns,
                   "Number of pictures side by side in --strip and --sheet.")

@@ -174,6 +174,9 @@ TEST(Strip, NothingAndTooMuchAreRefused) {
   StripOptions one = small(0);
   one.one_picture = true;
   EXPECT_THROW(draw_strip(model, log, one), Error);
+  one.count = 101;
+  EXPECT_EQ(error_message([&] { draw_strip(model, log, one); }, ErrorCode::usage),
+            "the number of postures is 101; it must be from 1 to 100");
   try {
     draw_sheet(std::vector<Image>(5, tile(4000, 1, 0)), 5);
     FAIL();

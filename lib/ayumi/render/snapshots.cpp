@@ -67,9 +67,9 @@ Image draw_sheet(const std::vector<Image>& tiles, int columns) {
 Image draw_strip(const RobotModel& model, const SimulationLog& log, const StripOptions& options,
                  const Progress& progress, std::vector<std::string>* notes) {
   const double last = duration(log);
-  require_within("the number of snapshots",
+  require_within(options.one_picture ? "the number of postures" : "the number of snapshots",
                  options.times.empty() ? options.count : static_cast<double>(options.times.size()),
-                 StripOptions::kCount);
+                 options.one_picture ? StripOptions::kExposures : StripOptions::kCount);
   require_within("the number of columns", options.columns, StripOptions::kColumns);
   std::vector<double> times =
       options.times.empty() ? telling_instants(log, options.count) : options.times;

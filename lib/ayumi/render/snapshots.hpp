@@ -12,9 +12,10 @@
 namespace ayumi {
 
 struct StripOptions {
-  /// Bounds of the numbers of snapshots and of columns. Chosen: in the largest sheet, 100 columns
-  /// are 164 pixels wide, and 20 x 20 snapshots are already more than anybody compares.
-  static constexpr Bounds kCount = {1, 400}, kColumns = {1, 100};
+  /// Bounds of the numbers of snapshots, of columns, and of postures in one picture. Chosen: in the
+  /// largest sheet, 100 columns are 164 pixels wide, and 20 x 20 snapshots are already more than
+  /// anybody compares. 100 postures cover each other.
+  static constexpr Bounds kCount = {1, 400}, kColumns = {1, 100}, kExposures = {1, 100};
 
   ClipOptions clip;           ///< options of the pictures; their size is that of one snapshot
   std::vector<double> times;  ///< instants [s]; if empty, `count` telling_instants()
