@@ -17,6 +17,7 @@
 
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/in_parallel.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
 #include "ayumi/io/bundled_data.hpp"
@@ -93,7 +94,7 @@ void add_global_options(CLI::App& app, Command& command_line, Context& context) 
       .add_option("--threads", context.threads,
                   "Number of threads; 0 = one for each processor. The results do not depend on "
                   "this number.")
-      ->check(whole_number_within(0, 1024).description(""))
+      ->check(whole_number_within(kThreadBounds).description(""))
       ->type_name("N");
   command_line.add_option("--seed", context.seed, "Seed of noise and random choices.")
       ->check(seed_number())

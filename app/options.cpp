@@ -1,6 +1,7 @@
 #include "options.hpp"
 
 #include <CLI/CLI.hpp>
+#include <cctype>
 
 namespace ayumi::app {
 
@@ -82,43 +83,71 @@ std::string Option::shown_name() const {
 
 Option* Command::keep(CLI::Option* option) { return &options_.emplace_back(option); }
 
+namespace {
+
+// Says that a word that stands where a value is needed is an option, so that the value is missing:
+// CLI11 takes such a word as the value. A negative number is no option.
+std::string complaint_of_option(const std::string& word, bool is_text) {
+  const bool is_letter = word.size() == 2 && std::isalpha(static_cast<unsigned char>(word[1])) != 0;
+  if (!word.starts_with("--") && !(is_text && word.starts_with("-") && is_letter)) return "";
+  return "'" + word + "' is an option, but a value is needed" +
+         (is_text ? "; for a file of this name, write ./" + word : "");
+}
+
+// Says that a result is not written to the standard output.
+std::string complaint_of_dash(const std::string& word) {
+  return word != "-" ? "" : "results are written to files only; for a file named '-', write ./-";
+}
+
+}  // namespace
+
+Option* Command::keep_value(CLI::Option* option, bool is_text) {
+  option->check(CLI::Validator(
+      [is_text](std::string& word) { return complaint_of_option(word, is_text); }, "", ""));
+  return keep(option);
+}
+
 Command* Command::add_subcommand(std::string name, std::string description) {
   return &subcommands_.emplace_back(*app_.add_subcommand(std::move(name), std::move(description)));
 }
 
 Option* Command::add_option(std::string name, std::string& value, std::string description) {
-  return keep(app_.add_option(std::move(name), value, std::move(description)));
+  const bool is_output = name.starts_with("-o,");
+  Option* const option =
+      keep_value(app_.add_option(std::move(name), value, std::move(description)), true);
+  if (is_output) option->check({complaint_of_dash, "", ""});
+  return option;
 }
 
 Option* Command::add_option(std::string name, double& value, std::string description) {
-  return keep(app_.add_option(std::move(name), value, std::move(description)));
+  return keep_value(app_.add_option(std::move(name), value, std::move(description)), false);
 }
 
 Option* Command::add_option(std::string name, int& value, std::string description) {
-  return keep(app_.add_option(std::move(name), value, std::move(description)));
+  return keep_value(app_.add_option(std::move(name), value, std::move(description)), false);
 }
 
 Option* Command::add_option(std::string name, std::int64_t& value, std::string description) {
-  return keep(app_.add_option(std::move(name), value, std::move(description)));
+  return keep_value(app_.add_option(std::move(name), value, std::move(description)), false);
 }
 
 Option* Command::add_option(std::string name, std::uint64_t& value, std::string description) {
-  return keep(app_.add_option(std::move(name), value, std::move(description)));
+  return keep_value(app_.add_option(std::move(name), value, std::move(description)), false);
 }
 
 Option* Command::add_option(std::string name, std::optional<double>& value,
                             std::string description) {
-  return keep(app_.add_option(std::move(name), value, std::move(description)));
+  return keep_value(app_.add_option(std::move(name), value, std::move(description)), false);
 }
 
 Option* Command::add_option(std::string name, std::vector<std::string>& values,
                             std::string description) {
-  return keep(app_.add_option(std::move(name), values, std::move(description)));
+  return keep_value(app_.add_option(std::move(name), values, std::move(description)), true);
 }
 
 Option* Command::add_option(std::string name, std::vector<double>& values,
                             std::string description) {
-  return keep(app_.add_option(std::move(name), values, std::move(description)));
+  return keep_value(app_.add_option(std::move(name), values, std::move(description)), false);
 }
 
 Option* Command::add_flag(std::string name, bool& value, std::string description) {

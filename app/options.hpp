@@ -103,6 +103,8 @@ class Command {
 
  private:
   Option* keep(CLI::Option* option);
+  /// Keeps an option or argument with a value, which must not be the name of an option.
+  Option* keep_value(CLI::Option* option, bool is_text);
   CLI::App& app_;
   std::list<Option> options_;
   std::list<Command> subcommands_;

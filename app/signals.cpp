@@ -21,7 +21,9 @@ volatile std::sig_atomic_t is_stop_expected = 0;
 
 void on_signal(int signal) {
   stop_signal = 1;
-  std::signal(signal, SIG_DFL);
+  // The shell and the system both send SIGHUP when a terminal is closed, so the second one is no
+  // wish to end at once.
+  std::signal(signal, signal == SIGHUP ? SIG_IGN : SIG_DFL);
   const itimerspec once = {{0, 0}, {0, kPatience}};
   if (has_timer) timer_settime(impatience, 0, &once, nullptr);
 }

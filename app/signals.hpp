@@ -7,8 +7,9 @@ namespace ayumi::app {
 constexpr int kStoppedExitCode = 130;
 
 /// From now on, Ctrl-C (and SIGTERM) asks for a stop instead of ending the process. The process
-/// ends at the second Ctrl-C, or if its work has not stopped within 0.7 s. A limit on the size of
-/// files (`ulimit -f`) does not end the process either: writing then fails as on a full disk.
+/// ends at the second Ctrl-C, or if its work has not stopped within 0.7 s. A terminal that is
+/// closed (SIGHUP) also asks for a stop. A limit on the size of files (`ulimit -f`) does not end
+/// the process either: writing then fails as on a full disk.
 void watch_for_signals();
 
 /// This command normally ends by being stopped. If it is still working 0.7 s after the stop, it is

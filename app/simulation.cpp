@@ -35,7 +35,7 @@ void add_simulation_options(Command& command, SimulationChoice& choice) {
   command.add_flag("--true-state", choice.true_state,
                    "Give the controller the true state in place of the estimate.");
   command.add_option("--substeps", choice.substeps, "Number of integrator steps per servo period.")
-      ->check(whole_number_within(1, 100).description(""))
+      ->check(whole_number_within(SimulateOptions::kSubsteps).description(""))
       ->type_name("N");
   add_unstable_flag(command, choice.unstable);
   add_plant_option(command, choice.plant);

@@ -273,7 +273,7 @@ void add_compare(Command& app, Context& context) {
   command
       ->add_option("--rate", options.reading.rate,
                    "Rows per second of a recording without a time column [1/s] (default: 1000).")
-      ->check(number_within(1.0, 1e5))
+      ->check(number_within(kRecordingRate))
       ->type_name("HZ");
   command->callback([&context] {
     options.reading.degrees = unit == "deg";

@@ -756,7 +756,7 @@ void add_edit(Command& app, Context& context) {
           "of the support [m]. Without --margin, this distance is an eighth of the width of "
           "the sole, or 80 % of the distance that the result has without --local, whichever "
           "is larger. A smaller value allows a faster motion.")
-      ->check(number_within(0.0, 1.0))
+      ->check(number_within(LocalRetimeOptions::kMostMargin))
       ->type_name("M");
   retime_command.add_flag("--keep-pauses", options.keep_pauses,
                           "With --local: time spans in which nothing moves keep their duration.");

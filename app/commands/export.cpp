@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
@@ -216,6 +217,35 @@ Source source_of_table(const ExportOptions& options, const Context& context,
   return source;
 }
 
+// Throws Error(bad_file) unless the table of a run is the one that its log gives. Hashes alone do
+// not show that the two belong together, because run.json could have been written anew.
+void require_table_of_log(const ReferenceTrajectory& table, const ReferenceTrajectory& of_log,
+                          const std::string& file) {
+  // Largest difference [rad, m, m, N]. Derived: the file has every digit, and the zeros of encoders
+  // are added and subtracted, which rounds by less than 1e-14.
+  constexpr double kRounding = 1e-9;
+  const auto refuse = [&](const std::string& what) {
+    fail(ErrorCode::bad_file, {file},
+         what + "; the table or the log has changed; make the run again");
+  };
+  if (table.dt != of_log.dt)
+    refuse("the table has a row every " + text::brief(1000 * table.dt) +
+           " ms, but the log of the run has one every " + text::brief(1000 * of_log.dt) + " ms");
+  if (table.rows.size() != of_log.rows.size())
+    refuse("the table has " + text::counted(table.rows.size(), "row") +
+           ", but the log of the run has " + std::to_string(of_log.rows.size()));
+  if (table.joints != of_log.joints) refuse("the table has other joints than the log of the run");
+  for (size_t k = 0; k < table.rows.size(); ++k) {
+    const ReferenceRow &a = table.rows[k], &b = of_log.rows[k];
+    const bool same = (a.theta - b.theta).cwiseAbs().maxCoeff() <= kRounding &&
+                      (a.base.position - b.base.position).norm() <= kRounding &&
+                      (a.cog - b.cog).norm() <= kRounding && (a.zmp - b.zmp).norm() <= kRounding &&
+                      std::abs(a.fz - b.fz) <= kRounding && a.contact == b.contact;
+    if (!same)
+      refuse("row " + std::to_string(k + 1) + " of the table is not that of the log of the run");
+  }
+}
+
 struct CautiousTable {
   ReferenceTrajectory reference;
   TableCaution caution;
@@ -252,7 +282,11 @@ CautiousTable table_of_run(const ExportOptions& options, const RunFolder& run,
   const TableServo wanted = table_servo(model, profile, content);
   const bool as_wanted = table->servo.content == wanted.content &&
                          table->servo.delay == wanted.delay && table->servo.lag == wanted.lag;
-  return {as_wanted ? *table : made(log), caution};
+  if (!as_wanted) return {made(log), caution};
+  require_table_of_log(
+      *table, made(log),
+      (fs::path(options.input) / (pushed ? "reference_pushed.csv" : "reference.csv")).string());
+  return {*table, caution};
 }
 
 std::string log_of_table(const ExportOptions& options, const RunFolder& run) {
@@ -513,7 +547,7 @@ TableCaution caution_of_written(const Source& source, const SafeTable& safe) {
 
 /// The file name that shows that a table is not for a robot: walk.UNSAFE.csv.
 std::string unsafe_name(const std::string& output) {
-  if (output == "-" || fs::path(output).stem().extension() == ".UNSAFE") return output;
+  if (fs::path(output).stem().extension() == ".UNSAFE") return output;
   const fs::path path = output;
   return (path.parent_path() / (path.stem().string() + ".UNSAFE" + path.extension().string()))
       .string();
@@ -739,12 +773,12 @@ void add_export(Command& app, Context& context) {
       ->add_option("--ramp", options->ramp,
                    "Shortest duration of the approach ramp before the motion [s] (default: 2; 0 "
                    "for an imported sequence whose motion is unchanged).")
-      ->check(number_within(0.0, SafetyOptions::kLongestRest));
+      ->check(number_within(SafetyOptions::kRest));
   command
       ->add_option("--hold", options->hold,
                    "Time for which the last posture is held [s] (default: 0.5; 0 for an imported "
                    "sequence whose motion is unchanged).")
-      ->check(number_within(0.0, SafetyOptions::kLongestRest));
+      ->check(number_within(SafetyOptions::kRest));
   Option* interval =
       command
           ->add_option(

@@ -236,7 +236,7 @@ void add_identify(Command& app, Context& context) {
       ->add_option("--rate", options.reading.rate,
                    "Rows per second of files without a time column [1/s] (default: 1000 for the "
                    "command, and the rate of the command for the measured angles).")
-      ->check(number_within(1.0, 1e5))
+      ->check(number_within(kRecordingRate))
       ->type_name("HZ");
   command
       ->add_option("--longest-lag", options.longest_lag_ms,
@@ -244,7 +244,8 @@ void add_identify(Command& app, Context& context) {
                    "larger, Ayumi refuses the recording, because the recording and the command "
                    "probably do not begin at the same time (default: 30 or twice the lag of the "
                    "slowest servo of ROBOT, whichever is larger).")
-      ->check(number_within(1.0, 500.0))
+      ->check(number_within(1000 * IdentifyOptions::kLongestLag.least,
+                            1000 * IdentifyOptions::kLongestLag.most))
       ->type_name("MS");
   command->callback([&context] {
     options.reading.degrees = unit == "deg";

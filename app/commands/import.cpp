@@ -126,7 +126,7 @@ void add_import(Command& app, Context& context) {
   command
       ->add_option("--rate", options.how.reading.rate,
                    "Rows per second of a file without times [1/s].")
-      ->check(number_within(1.0, 1e5))
+      ->check(number_within(ImportOptions::kRate))
       ->type_name("HZ");
   command
       ->add_option(
@@ -156,25 +156,25 @@ void add_import(Command& app, Context& context) {
       ->add_option("--ramp", options.how.ramp,
                    "For a recording that begins or ends while the robot moves: time in which the "
                    "motion speeds up from rest, or slows down to rest [s].")
-      ->check(number_within(0.02, 10.0))
+      ->check(number_within(PatternImport::kRamp))
       ->type_name("S");
   command
       ->add_option("--contact-height", options.how.contact.height,
                    "A sole that is more than this height above the lowest sole does not carry the "
                    "robot [m].")
-      ->check(number_within(0.0, 0.2))
+      ->check(number_within(ContactThresholds::kHeight))
       ->capture_default_str();
   command
       ->add_option("--contact-speed", options.how.contact.speed,
                    "A sole that moves faster than this does not carry the robot [m/s].")
-      ->check(number_within(0.0, 5.0))
+      ->check(number_within(ContactThresholds::kSpeed))
       ->capture_default_str();
   command
       ->add_option(
           "--contact-load", options.how.contact.load,
           "Where the motion needs a smaller vertical ground force than this, no sole carries the "
           "robot [multiple of the weight].")
-      ->check(number_within(0.0, 2.0))
+      ->check(number_within(ContactThresholds::kLoad))
       ->capture_default_str();
   command->add_flag(
       "--commands", options.how.reading.commands,
@@ -193,7 +193,7 @@ void add_import(Command& app, Context& context) {
       ->add_option("--smooth", options.how.reading.smooth,
                    "Largest change of an angle by smoothing [deg] (default: 0.1 for HOAP counts, 0 "
                    "for angle tables).")
-      ->check(number_within(0.0, 5.0))
+      ->check(number_within(ImportOptions::kSmooth))
       ->type_name("DEG");
   command->callback([&context] {
     options.how.reading.degrees = unit == "deg";

@@ -273,15 +273,15 @@ void add_picture_options(Command& command, PreviewOptions& options) {
       "the first push; without a push, the time of the fall; otherwise the middle of the first "
       "flight; otherwise the time at which the posture differs most from the one at the start).");
   command.add_option("--strip", options.strip, "Number of snapshots side by side in a .png.")
-      ->check(whole_number_within(1, 400));
+      ->check(whole_number_within(StripOptions::kCount));
   command
       .add_option("--exposures", options.exposures,
                   "Number of postures that are drawn into one .png, evenly spaced in time.")
-      ->check(whole_number_within(1, 100));
+      ->check(whole_number_within(StripOptions::kExposures));
   command
       .add_option("--columns", options.columns,
                   "Number of pictures side by side in --strip and --sheet.")
-      ->check(whole_number_within(1, 100))
+      ->check(whole_number_within(StripOptions::kColumns))
       ->capture_default_str();
   command.add_option("--view", clip.camera.view, "View: " + text::join(view_names(), ", ") + ".")
       ->check(one_of(view_names()).description(""))

@@ -261,35 +261,35 @@ void add_push(Command& app, Context& context) {
   command
       ->add_option("--directions", push.directions,
                    "Number of directions, evenly spread; the first is forward.")
-      ->check(whole_number_within(1, 360).description(""))
+      ->check(whole_number_within(PushOptions::kDirections).description(""))
       ->type_name("N")
       ->capture_default_str();
   add_push_times(*command, options->times);
   command
       ->add_option("--step", push.step,
                    "Resolution of the search as a multiple of the capture bound.")
-      ->check(number_within(0.005, 1.0).description(""))
+      ->check(number_within(PushOptions::kStep).description(""))
       ->type_name("X")
       ->capture_default_str();
   command->add_option("--cap", push.cap, "Largest push tried, as a multiple of the capture bound.")
-      ->check(number_within(0.1, 20.0).description(""))
+      ->check(number_within(PushOptions::kCap).description(""))
       ->type_name("X")
       ->capture_default_str();
   command
       ->add_option("--replicas", push.replicas,
                    "Number of small variations of every push. The robot must survive all of them.")
-      ->check(whole_number_within(0, 100).description(""))
+      ->check(whole_number_within(PushOptions::kReplicas).description(""))
       ->type_name("N")
       ->capture_default_str();
   command->add_option("--duration", push.duration, "Duration of a push [s].")
-      ->check(number_within(0.001, 1.0).description(""))
+      ->check(number_within(PushOptions::kDuration).description(""))
       ->type_name("T")
       ->capture_default_str();
   add_noise_flag(*command, push.simulate.sensor_noise);
   command
       ->add_option("--substeps", push.simulate.substeps,
                    "Number of integrator steps per servo period.")
-      ->check(whole_number_within(1, 100).description(""))
+      ->check(whole_number_within(SimulateOptions::kSubsteps).description(""))
       ->type_name("N")
       ->capture_default_str();
   add_unstable_flag(*command, options->unstable);

@@ -539,7 +539,7 @@ void add_repair(Command& app, Context& context) {
           "Wanted distance from the ZMP to the edge of the support [m]. Where the original motion "
           "has a smaller distance, the repair tries to reach the wanted one (default: 0.9 x "
           "inner radius of the sole).")
-      ->check(number_within(0.0, 0.1))
+      ->check(number_within(RepairOptions::kZmpMargin))
       ->type_name("M");
   command
       ->add_option(
@@ -548,7 +548,7 @@ void add_repair(Command& app, Context& context) {
           "larger factor, the repair changes more to gain safety. 0 gives the smallest change that "
           "passes "
           "the check (default: the factor in the pattern; 1 if the pattern has none).")
-      ->check(number_within(0.0, 1e6))
+      ->check(number_within(RepairOptions::kSafety))
       ->type_name("FACTOR");
   command
       ->add_option("--knots", options.repair.knot_spacing,
@@ -561,7 +561,7 @@ void add_repair(Command& app, Context& context) {
           "--max-iterations", options.repair.max_iterations,
           "Largest number of iterations in each run of the solver Ipopt. A repair runs Ipopt "
           "several times.")
-      ->check(whole_number_within(1, 10000))
+      ->check(whole_number_within(RepairOptions::kMaxIterations))
       ->type_name("N")
       ->capture_default_str();
   command

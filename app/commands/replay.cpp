@@ -312,7 +312,7 @@ void add_replay(Command& app, Context& context) {
   command
       ->add_option("--rate", options->rate,
                    "Rows per second of a table without a time column [1/s].")
-      ->check(number_within(1.0, 1e4))
+      ->check(number_within(ImportOptions::kRate))
       ->type_name("HZ");
   command
       ->add_option("--settle", options->settle,

@@ -145,18 +145,18 @@ void add_tune(Command& app, Context& context) {
   command
       ->add_option("--level", t.level,
                    "Size of the test pushes as a multiple of the capture bound.")
-      ->check(number_within(0.01, 5.0).description(""))
+      ->check(number_within(TuneOptions::kLevel).description(""))
       ->capture_default_str()
       ->type_name("X");
   command
       ->add_option("--directions", t.directions,
                    "Number of push directions, evenly spread; the first is forward.")
-      ->check(whole_number_within(1, 360).description(""))
+      ->check(whole_number_within(PushOptions::kDirections).description(""))
       ->capture_default_str()
       ->type_name("N");
   add_push_times(*command, options->times);
   command->add_option("--rounds", t.rounds, "Number of passes of the search through all gains.")
-      ->check(whole_number_within(1, 50).description(""))
+      ->check(whole_number_within(TuneOptions::kRounds).description(""))
       ->capture_default_str()
       ->type_name("N");
   add_noise_flag(*command, t.simulate.sensor_noise);

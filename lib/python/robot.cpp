@@ -1,6 +1,9 @@
 // Robots: reading them, their joints, links and limits, and the state of a robot.
 
+#include <cmath>
+
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
 #include "bindings.hpp"
@@ -27,6 +30,17 @@ py::array dof_view(const py::object& self, double Dof::*member) {
                  {static_cast<py::ssize_t>(sizeof(Dof))}, self);
 }
 
+/// Length below which a quaternion is no attitude. Chosen: rounding turns a shorter one noticeably.
+constexpr double kShortestQuaternion = 1e-6;
+
+void require_finite(const char* what, const Eigen::Ref<const Eigen::VectorXd>& values) {
+  for (Eigen::Index i = 0; i < values.size(); ++i)
+    if (!std::isfinite(values[i]))
+      fail(ErrorCode::usage, std::string(what) + " of the state has the value " +
+                                 text::exact(values[i]) + " at index " + std::to_string(i) +
+                                 "; finite numbers are expected");
+}
+
 void bind_state(py::module_& m) {
   py::class_<RobotState>(
       m, "RobotState",
@@ -40,7 +54,18 @@ void bind_state(py::module_& m) {
              if (state.dtheta.size() != theta.size())
                fail(ErrorCode::usage, "dtheta has " + std::to_string(state.dtheta.size()) +
                                           " values, theta has " + std::to_string(theta.size()));
-             state.base = {position, Eigen::Quaterniond(attitude).normalized()};
+             require_finite("theta", theta);
+             require_finite("dtheta", state.dtheta);
+             require_finite("position", position);
+             require_finite("attitude", attitude);
+             require_finite("velocity", velocity);
+             require_finite("angular_velocity", angular_velocity);
+             const double length = attitude.norm();
+             if (!(length > kShortestQuaternion && std::isfinite(length)))
+               fail(ErrorCode::usage, "attitude of the state has the length " +
+                                          text::brief(length) + "; a quaternion needs a length " +
+                                          "above " + text::brief(kShortestQuaternion));
+             state.base = {position, Eigen::Quaterniond(attitude / length)};
              state.base_velocity = velocity;
              state.base_angular_velocity = angular_velocity;
              return state;

@@ -1,6 +1,7 @@
 // Simulations and their logs; a plant or a controller that is written in Python.
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
 #include "ayumi/control/estimator.hpp"
 #include "ayumi/control/gain_design.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
@@ -73,8 +74,14 @@ class PythonPlant {
     report_ =
         returned<StepReport>(object_.get().attr("step")(py::cast(targets), py::cast(input), dt),
                              "plant: step(targets, input, dt) must return an ayumi.StepReport");
-    check_report(*model_, report_);
-    take_state();
+    try {
+      check_report(*model_, report_);
+      take_state();
+    } catch (const Error& error) {
+      throw_with_more(error,
+                      "; the step began " + text::fixed(time_, 3) + " s after the plant's start");
+    }
+    time_ += dt;
     return report_;
   }
 
@@ -92,6 +99,7 @@ class PythonPlant {
   RobotState state_;
   RobotData data_;
   StepReport report_;
+  double time_ = 0;  ///< time of all steps so far [s]
 };
 
 void warn_slow(const char* what) {

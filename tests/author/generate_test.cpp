@@ -148,6 +148,8 @@ TEST(WalkPattern, NamesTheParameterOutOfRange) {
   EXPECT_NE(with([](auto& p) { p.turn = 1; }).find("turn"), std::string::npos);
   EXPECT_NE(with([](auto& p) { p.side = -1; }).find("side"), std::string::npos);
   EXPECT_NE(with([](auto& p) { p.cog_height = 0.01; }).find("cog_height"), std::string::npos);
+  EXPECT_NE(with([](auto& p) { p.cog_height = -1; }).find(" m, or 0 for the usual height"),
+            std::string::npos);
 }
 
 TEST(SwayPattern, ReachesItsAmplitudeAtRestAndComesBack) {

@@ -77,8 +77,10 @@ TEST(FolderLock, IsHeldByOneAtATime) {
 TEST(FolderLock, RemovesTheFolderThatItMadeWhereItIsEmpty) {
   const test::TemporaryFolder folder;
   const fs::path made = folder.path() / "a" / "b";
-  { const FolderLock lock(made); }
-  EXPECT_FALSE(fs::exists(made));
+  for (const fs::path& name : {made, made / ""}) {
+    { const FolderLock lock(name); }
+    EXPECT_FALSE(fs::exists(made.parent_path())) << "the folder around it was made, too";
+  }
   {
     const FolderLock lock(made);
     write_file(made / "result", "x");

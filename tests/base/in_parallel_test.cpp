@@ -39,5 +39,15 @@ TEST(InParallel, ThrowsTheErrorOfTheFirstJobThatFails) {
   }
 }
 
+TEST(InParallel, RefusesANumberOfThreadsThatIsNone) {
+  for (const int threads : {-5, 1025}) {
+    std::atomic<bool> stop = false;
+    EXPECT_EQ(
+        test::error_message([&] { in_parallel(1, threads, stop, [](size_t) {}); },
+                            ErrorCode::usage),
+        "the number of threads is " + std::to_string(threads) + "; it must be from 0 to 1024");
+  }
+}
+
 }  // namespace
 }  // namespace ayumi

@@ -284,6 +284,43 @@ TEST_F(LogExport, ForgedPosturesAreRefused) {
     EXPECT_NE(entry.path().stem(), "f") << entry.path();
 }
 
+// A table that does not come from the log of its run, with all hashes made to fit.
+TEST_F(LogExport, TablesOfAnotherLogAreRefused) {
+  const auto expect_refused_run = [&](const std::string& what, const auto& forge,
+                                      const std::string& message) {
+    RunFolder forged = read_run(folder->path() / "run");
+    forge(forged);
+    fs::remove_all(folder->path() / "forged");
+    fs::copy(folder->path() / "run", folder->path() / "forged");
+    write_run(folder->path() / "forged", forged);
+    for (const char* const format : {"hoap", "csv", "npz"}) {
+      const Output output = ayumi({"forged", "--format", format, "-o", "f.out"});
+      EXPECT_EQ(output.exit_code, 3) << what << output.out;
+      EXPECT_NE(output.err.find(message), std::string::npos) << what << output.err;
+      if (what.starts_with("log")) break;
+    }
+    EXPECT_FALSE(fs::exists(folder->path() / "f.out")) << what;
+  };
+  const auto with_dt = [](double dt) {
+    return [dt](RunFolder& run) {
+      for (auto& [name, log] : run.logs) log.dt = dt;
+    };
+  };
+  expect_refused_run("log at half the rate", with_dt(0.002),
+                     "the log has a row every 2 ms, but the servo period of 'hoap1' is 1 ms");
+  expect_refused_run(
+      "bent knee", [](RunFolder& run) { run.reference->rows[100].theta[10] += 0.5; },
+      "forged/reference.csv: row 101 of the table is not that of the log of the run");
+  expect_refused_run(
+      "other ZMP", [](RunFolder& run) { run.reference->rows[0].zmp.x() += 0.001; },
+      "forged/reference.csv: row 1 of the table is not that of the log of the run");
+  expect_refused_run(
+      "fewer rows", [](RunFolder& run) { run.reference->rows.pop_back(); }, " rows, but the log");
+  expect_refused_run(
+      "other rate", [](RunFolder& run) { run.reference->dt = 0.002; },
+      "the table has a row every 2 ms, but the log of the run has one every 1 ms");
+}
+
 // Their COG is not that of the robot as its files describe it.
 TEST_F(LogExport, RunsWithAPayloadAndCasesOfAStudyAreExported) {
   std::string text = kPushed;

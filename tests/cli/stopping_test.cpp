@@ -67,6 +67,51 @@ TEST(Stopping, CtrlCEndsARunAndTheFfmpegThatHangs) {
   }
 }
 
+// The shell and the system both send SIGHUP when a terminal is closed.
+class ClosedTerminal : public testing::Test {
+ protected:
+  /// Starts a simulation that takes many seconds, and waits until it has begun.
+  pid_t simulation() {
+    write(folder / "p.json", R"({
+      "format": "ayumi.pattern/1", "name": "stands for long", "robot": "hoap1",
+      "phases": [{ "until": 120, "support": "both" }],
+      "keyframes": [{ "t": 0, "posture": "home" }]
+    })");
+    const pid_t process = start({"simulate", "p.json", "-o", "new/out"}, folder.path());
+    EXPECT_TRUE(holds_within(240, [&] { return fs::exists(folder / "new/out/.ayumi_part"); }));
+    return process;
+  }
+  void expect_stopped(pid_t process) {
+    int status = 0;
+    ::waitpid(process, &status, 0);
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 130) << status;
+    EXPECT_FALSE(fs::exists(folder / "new")) << "the folders were not there before";
+  }
+  Folder folder;
+};
+
+TEST_F(ClosedTerminal, EndsTheWorkAndLeavesNothing) {
+  const pid_t process = simulation();
+  for (int i = 0; i < 3; ++i) {
+    ::kill(process, SIGHUP);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  expect_stopped(process);
+}
+
+// nohup makes the program ignore the signal.
+TEST_F(ClosedTerminal, DoesNotEndWhatNohupHasStarted) {
+  const auto before = std::signal(SIGHUP, SIG_IGN);
+  const pid_t process = simulation();
+  std::signal(SIGHUP, before);
+  ::kill(process, SIGHUP);
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  int status = 0;
+  ASSERT_EQ(::waitpid(process, &status, WNOHANG), 0) << status;
+  ::kill(process, SIGTERM);
+  expect_stopped(process);
+}
+
 TEST(Stopping, AMissingFfmpegIsFoundBeforeTheWork) {
   const Folder folder;
   fs::create_directories(folder / "bin");

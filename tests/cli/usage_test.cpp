@@ -281,6 +281,28 @@ TEST_F(Usage, ValuesThatAreNoNumbersAreUsageErrors) {
   }
 }
 
+// An option without its value would take the next option for its value.
+TEST_F(Usage, AnOptionIsNoValue) {
+  const std::string pattern = AYUMI_SOURCE_DIR "/patterns/hoap1_walk.json";
+  const auto refused = [&](const std::vector<std::string>& words, const std::string& message) {
+    const Output output = ayumi(words);
+    EXPECT_EQ(output.exit_code, 2) << output.err;
+    EXPECT_NE(output.err.find(message), std::string::npos) << output.err;
+    EXPECT_EQ(output.out, "");
+  };
+  for (const std::string option : {"--force", "-q"}) {
+    refused({"export", pattern, "-o", option},
+            "--out: '" + option +
+                "' is an option, but a value is needed; for a file of this name, write ./" +
+                option);
+    EXPECT_FALSE(fs::exists(folder / option));
+  }
+  refused({"check", pattern, "--set", "--json"}, "--set: '--json' is an option");
+  refused({"simulate", pattern, "--seed", "--quiet"}, "--seed: '--quiet' is an option");
+  refused({"simulate", pattern, "-o", "-"},
+          "--out: results are written to files only; for a file named '-', write ./-");
+}
+
 TEST_F(Usage, StandardInputCannotBeWatched) {
   const Output output = ayumi({"check", "-", "--watch"});
   EXPECT_EQ(output.exit_code, 2);

@@ -6,9 +6,11 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cmath>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/in_parallel.hpp"
+#include "ayumi/base/text.hpp"
 #include "ayumi/identify/recording_checks.hpp"
 #include "ayumi/identify/servo_response.hpp"
 #include "tests/identify/synthetic_servo.hpp"
@@ -179,6 +181,12 @@ TEST(Identify, SaysThatTheRecordingMayBeShifted) {
   IdentifyOptions strict = held_root();
   strict.longest_lag = 0.01;
   EXPECT_THROW(identify(model, motion, strict, "m.csv"), Error);
+  for (const double lag : {-1.0, 0.0005, 1e300, std::nan("")}) {
+    strict.longest_lag = lag;
+    EXPECT_EQ(
+        error_message([&] { identify(model, motion, strict, "m.csv"); }, ErrorCode::usage),
+        "the longest lag of a servo is " + text::exact(lag) + " s; it must be from 0.001 to 0.5 s");
+  }
 }
 
 // Angles that are two rows ahead of their command are accepted, because some recorders number their
@@ -227,11 +235,11 @@ TEST(RecordingChecks, OneLineForARecordingThatIsNotTheAnswer) {
   said(answer_error([](RecordedMotion& m) { m.measured.theta.conservativeResize(3000, 1); }),
        "m.csv: the recording lasts 2.999 s, but its command lasts 6.000 s");
   said(answer_error(late_by(800)),
-       "ms behind their command, but a servo is at most 30 ms behind (--longest-lag); the "
+       "ms behind their command, but a servo is at most 30 ms behind (the longest lag); the "
        "recording is shifted");
   // A lag of 50 ms is also too large for a servo.
   said(answer_error(late_by(50)),
-       "ms behind their command, but a servo is at most 30 ms behind (--longest-lag); the "
+       "ms behind their command, but a servo is at most 30 ms behind (the longest lag); the "
        "recording is shifted");
   said(answer_error([](RecordedMotion& m) { m.measured.theta.conservativeResize(5901, 1); }),
        "m.csv: the recording lasts 5.900 s, but its command lasts 6.000 s");

@@ -46,6 +46,8 @@ TEST(Expression, SaysWhatIsWrong) {
             std::string::npos);
   EXPECT_NE(value_error(std::string(100000, '-')).find("nested more than 64 levels"),
             std::string::npos);
+  for (const std::string& text : {std::string(5000, 'x'), "${" + std::string(5000, 'x') + "}"})
+    EXPECT_LT(value_error(text).size(), 600u) << "a long text is not repeated";
 }
 
 }  // namespace

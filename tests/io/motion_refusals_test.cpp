@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "ayumi/base/file.hpp"
+#include "ayumi/base/text.hpp"
 #include "ayumi/io/formats/motion_formats.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "tests/io/moving_motion.hpp"
@@ -235,8 +236,58 @@ TEST(MotionRefusals, Animations) {
        {"<a>\n" + curve(key) + "</a>\n<b/>\n", "a second <b> begins here, but a file has one"},
        {"<a>\n" + curve(key) + curve(key) + "</a>\n", "the actuator 'l_knee' has two curves"},
        {"<a>\n" + curve("") + "</a>\n", "the file has no key"},
-       {"<a>\n" + curve("<Key value=\"1\"/>") + "</a>\n", "a key has no frame"}},
+       {"<a>\n" + curve("<Key value=\"1\"/>") + "</a>\n", "a key has no frame"},
+       {"<a>\n" + curve(key + key) + "</a>\n", ":2: frame 0 does not come after frame 0"},
+       {"<a>\n" + curve(key + "<Key value=\"1\" frame=\"-5\"/>") + "</a>\n",
+        "frame -5 does not come after frame 0 of the key before; frames must increase"},
+       {"<a fps=\"0\">\n" + curve(key) + "</a>\n", "m.qianim:1: fps is 0; give the number"},
+       {"<a fps=\"many\">\n" + curve(key) + "</a>\n", "m.qianim:1: fps: 'many' is not a number"},
+       {"<a fps=\"30\">\n" + curve(key) + "</a>\n",
+        ":2: fps is 25, but another part of the file has 30"}},
       "m.qianim");
+}
+
+// The rate and the times of rows, in whatever format they are stated.
+TEST(MotionRefusals, RatesAndTimesThatNoMotionHas) {
+  const auto rows = [](const std::vector<std::string>& times) {
+    std::string text = "t[s],theta.l_knee[rad]\n";
+    for (const std::string& time : times) text += time + ",0.1\n";
+    return text;
+  };
+  expect_refused(
+      {{rows({"0", "0.001", "0.002", "3599"}),
+        "data row 4 comes 3599 s after the row before, but the rows of a motion are 0.01 ms to 10 "
+        "s apart; correct the times, or cut the file where rows are missing"},
+       {rows({"0", "1", "2", "100"}),
+        "data row 4 comes 98 s after the row before, but the rows of a motion are 0.01 ms to 60 s"},
+       {rows({"0", "1e-9", "2e-9"}), "the rows are 1e-06 ms apart"}},
+      "m.csv");
+  const auto frames_at = [](const std::string& rate) {
+    return "{\"FPS\": " + rate +
+           ", \"FrameDuration\": 0.01, \"Joints\": [\"l_knee\"], \"Frames\": [[0.1], [0.2]]}";
+  };
+  const auto curve_at = [](const std::string& rate) {
+    return "<a><ActuatorCurve fps=\"" + rate +
+           "\" actuator=\"l_knee\"><Key value=\"1\" frame=\"0\"/><Key value=\"2\" "
+           "frame=\"1\"/></ActuatorCurve></a>";
+  };
+  expect_refused({{curve_at("1e300"), "the rows are 1e-297 ms apart"},
+                  {curve_at("1e-300"), "data row 2 comes 1e+300 s after the row before"}},
+                 "m.qianim");
+  const std::string sequence_at = sequence("JointDisplacement", "    frame_rate: RATE\n" + kKnee);
+  for (const std::string rate : {"1e300", "-5", "1e-300"}) {
+    std::string text = body(sequence_at);
+    text.replace(text.find("RATE"), 4, rate);
+    expect_refused({{text, "the file states " + text::brief(std::stod(rate)) + " rows per second"}},
+                   "m.yaml");
+  }
+  for (const std::string rate : {"1e300", "-5", "0"})
+    expect_refused({{frames_at(rate), "rows per second, but the rows of a motion are"}}, "m.json");
+  for (const double rate : {1e300, -1.0, std::nan("")})
+    EXPECT_NE(error_message([&] { read_motion_rows("0.1\n", "m", hoap1(), {.rate = rate}); },
+                            ErrorCode::usage)
+                  .find("the rate of the rows is "),
+              std::string::npos);
 }
 
 TEST(MotionRefusals, Trajectories) {

@@ -128,6 +128,10 @@ TEST(Recording, ATableWithGapsOrOtherUnitsGetsOneLine) {
   EXPECT_EQ(recording_error("t,r_knee\n0,0.1\n5,0.1\n10,0.1\n"),
             "m.csv: the times of 't' have no unit, and they increase by 5 per row; name the column "
             "t[ms] or t[s]");
+  for (const auto& [end, rate] : {std::pair("1e-300", "1e+300"), std::pair("60", "0.01667")})
+    EXPECT_EQ(recording_error("t[s],r_knee\n0,0.1\n" + std::string(end) + ",0.1\n"),
+              "m.csv: the file has " + std::string(rate) +
+                  " rows per second, but a recording has 1 to 1e+05; correct the times");
   EXPECT_TRUE(recording_error("t,knee\n0,0.1\n0.001,0.1\n")
                   .starts_with("m.csv: no column is a joint of 'hoap1'; its joints are r_hip_yaw"));
 }

@@ -234,6 +234,17 @@ TEST(SimulationLogFile, TicksAreServoPeriods) {
   }
 }
 
+// A report of a log with 200,000 events took longer than half a minute.
+TEST(SimulationLogFile, HasABoundedNumberOfEvents) {
+  SimulationLog log = random_log(3);
+  log.events.resize(10'100, {0.1, "push", "x"});
+  EXPECT_EQ(parse_message(log_bytes(log)), "no error");
+  log.events.resize(10'101, {0.1, "push", "x"});
+  EXPECT_EQ(parse_message(log_bytes(log)),
+            "x.bin (header): /events: the log has 10101 events, but at most 10100 are read; "
+            "simulate again");
+}
+
 TEST(SimulationLogFile, HashIsOfTheMotionNotOfTheCommandLine) {
   SimulationLog log = random_log(4);
   const std::string hash = log_hash(log);
@@ -419,6 +430,80 @@ TEST(RunFolderFile, WhatIsReadIsWhatWasCompared) {
   repeat("log_closed_loop.bin", [&] { EXPECT_EQ(log_hash(read_run_log(run)), hash); });
   repeat("reference.csv", [&] { EXPECT_EQ(read_run(run).reference->rows[0].theta[0], 0.1); });
   EXPECT_GT(refused, 0);
+}
+
+// Every file that a reader takes for a part of a run is bound to it by a hash in run.json, also if
+// run.json was written anew with its own hash.
+TEST(RunFolderFile, OnlyListedFilesInTheFolderAreRead) {
+  const fs::path folder = fresh_folder();
+  using Document = nlohmann::ordered_json;
+  const auto message = [&](const auto& change, const auto& use) {
+    fs::remove_all(folder);
+    write_run(folder / "run", example());
+    write_file(folder / "victim.txt", "precious");
+    Document document = Document::parse(read_file(folder / "run/run.json"));
+    document.erase("contents_sha256");
+    change(document);
+    std::string text = document.dump(2);
+    text.erase(text.rfind("\n}"));
+    write_file(folder / "run/run.json",
+               text + ",\n  \"contents_sha256\": \"" + sha256(text) + "\"\n}\n");
+    const std::string error = file_error([&] { use(folder / "run"); });
+    const size_t name = error.rfind(folder.string() + "/run/");
+    return name == std::string::npos ? error : error.substr(name + folder.string().size() + 5);
+  };
+  const auto read = [](const fs::path& run) { read_run(run); };
+  const auto read_all = [](const fs::path& run) { read_run(run, ComparedFiles::all); };
+  const auto read_one = [](const fs::path& run) { read_run_log(run); };
+  const auto verify = [](const fs::path& run) { verify_run(run); };
+  const auto expect_refused = [&](const auto& change, const std::string& expected) {
+    EXPECT_EQ(message(change, read), expected);
+    EXPECT_EQ(message(change, read_all), expected);
+    EXPECT_EQ(message(change, read_one), expected);
+    EXPECT_EQ(message(change, verify), expected);
+  };
+  const auto nothing = [](Document&) {};
+  expect_refused(nothing, "no error");
+  const std::string unlisted =
+      ": the run does not list this file in \"files\" of its run.json, so the file is of another "
+      "run or was changed; make the run again";
+  for (const std::string name : {"reference.csv", "log_open_loop.bin", "log_closed_loop.bin"})
+    expect_refused(
+        [&](Document& d) {
+          d["files"].erase(name);
+          d["file_bytes"].erase(name);
+        },
+        name + unlisted);
+  expect_refused([](Document& d) { d["files"] = d["file_bytes"] = Document::object(); },
+                 "log_closed_loop.bin" + unlisted);
+  expect_refused(
+      [](Document& d) { d["logs"]["closed_loop"]["file"] = "../run/log_closed_loop.bin"; },
+      "run.json: /logs/closed_loop/file: '../run/log_closed_loop.bin' is not the file of this log, "
+      "log_closed_loop.bin; make the run again");
+  expect_refused([](Document& d) { d["logs"]["closed_loop"]["file"] = "log_open_loop.bin"; },
+                 "run.json: /logs/closed_loop/file: 'log_open_loop.bin' is not the file of this "
+                 "log, log_closed_loop.bin; make the run again");
+  for (const std::string& name : {std::string("../victim.txt"), (folder / "victim.txt").string()})
+    EXPECT_NE(message([&](Document& d) { d["files"][name] = sha256("precious"); }, verify)
+                  .find("victim.txt' is not the name of a file in this folder"),
+              std::string::npos);
+  expect_refused([](Document& d) { d["file_bytes"]["other"] = 8; },
+                 "run.json: /file_bytes/other: \"files\" has no file of this name; make the run "
+                 "again");
+  // A log that the run does not have, such as one that a person has copied into the folder.
+  EXPECT_EQ(
+      message([&](Document&) { write_log(folder / "run/log_undisturbed.bin", random_log(1)); },
+              read),
+      "log_undisturbed.bin" + unlisted);
+  // An older version wrote no sizes. Its runs are read, but no table for a robot is made of them.
+  const auto without_sizes = [](Document& d) { d.erase("file_bytes"); };
+  EXPECT_EQ(message(without_sizes, read), "no error");
+  for (const std::string& error :
+       {message(without_sizes, read_all), message(without_sizes, verify)})
+    EXPECT_NE(error.find("the member 'file_bytes' is missing"), std::string::npos) << error;
+  EXPECT_NE(message([](Document& d) { d["file_bytes"].erase("reference.csv"); }, read_all)
+                .find("the member 'file_bytes/reference.csv' is missing"),
+            std::string::npos);
 }
 
 TEST(RunFolderFile, SaysWhatIsWrong) {

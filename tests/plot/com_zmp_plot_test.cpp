@@ -407,6 +407,13 @@ TEST(Loci, ErrorsSayWhatIsWrong) {
   EXPECT_NE(message_of(runs.both(), {.width = 10}).find("300"), std::string::npos);
   EXPECT_NE(message_of(runs.both(), {.cog = false, .zmp = false, .fz = false}).find("every panel"),
             std::string::npos);
+  const LociOptions with_model = {.model = &runs.model};
+  SimulationLog foreign = runs.standing;
+  foreign.joints.front() = "other";
+  EXPECT_NE(message_of({{"A", &runs.standing}, {"B", &foreign}}, with_model)
+                .find("run 'B' has " + std::to_string(foreign.joints.size()) +
+                      " joints, but not those of robot"),
+            std::string::npos);
   const SimulationLog empty;
   EXPECT_NE(message_of({{"a", &empty}}, {}).find("no samples"), std::string::npos);
 }

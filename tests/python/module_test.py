@@ -255,6 +255,8 @@ class Tables(unittest.TestCase):
         log = ayumi.plan(ayumi.sample(ayumi.squat_pattern(other, cycles=1), other))
         with self.assertRaisesRegex(ayumi.Error, "the run has other joints than robot 'hoap1'"):
             ayumi.table(walk(), log)
+        with self.assertRaisesRegex(ayumi.Error, "not those of robot 'hoap1'"):
+            ayumi.support_plot(walk().robot, {"other": log})
 
 
 class Errors(unittest.TestCase):
@@ -321,6 +323,46 @@ class Errors(unittest.TestCase):
         self.assertIn("allow_unstable", str(caught.exception))
         with self.assertRaises(TypeError):
             ayumi.simulate(task, no_such_option=1)
+
+    def test_numbers_out_of_bounds(self):
+        """The library has the bounds of the command line, and names the value and the bound."""
+        task, nan, inf = short_stand(), float("nan"), float("inf")
+        robot = task.robot
+        angles = (0.001, np.zeros((10, len(robot.joints))))
+        log = ayumi.plan(task)
+        for call, words in (
+                (lambda: ayumi.simulate(task, substeps=2**31 - 1), "servo period is 2147483647; "),
+                (lambda: ayumi.push(task, cap=inf), "largest push is inf capture bounds; "),
+                (lambda: ayumi.push(task, step=1e-300), "resolution of the search is 1e-300 "),
+                (lambda: ayumi.tune(task, rounds=10**9), r"number of rounds is 1e\+09; "),
+                (lambda: ayumi.tune(task, threads=-1), "number of threads is -1; "),
+                (lambda: ayumi.fastest_pace(task, resolution=nan), "resolution of the scale is nan"),
+                (lambda: ayumi.fastest_pace(task, resolution=0), "resolution of the scale is 0; "),
+                (lambda: ayumi.fastest_local_pace(task, margin=nan), "margin of the ZMP is nan m; "),
+                (lambda: ayumi.fastest_local_pace(task, table="a\0b"), "needs a file name"),
+                (lambda: ayumi.identify(robot, angles, angles, longest_lag=1e300),
+                 r"longest lag of a servo is 1e\+300 s; "),
+                (lambda: ayumi.identify(robot, angles, angles, threads=-5), "threads is -5; "),
+                (lambda: ayumi.repair(task, max_iterations=-1), "number of iterations is -1; "),
+                (lambda: ayumi.repair(task, safety=nan), "weight of safety is nan; "),
+                (lambda: ayumi.repair(task, zmp_margin=nan), "margin of the ZMP is nan m; "),
+                (lambda: ayumi.strip(robot, log, count=10**9), r"snapshots is 1e\+09; "),
+                (lambda: ayumi.strip(robot, log, columns=-1), "number of columns is -1; "),
+                (lambda: ayumi.robot_picture(robot, theta=np.full(len(robot.joints), nan)),
+                 "every joint needs a finite number"),
+                (lambda: ayumi.walk_pattern(robot, cog_height=-1), "or 0 for the usual height"),
+                (lambda: ayumi.gains(robot, absorb=1), "absorbed share of the ZMP error of 1 ")):
+            with self.assertRaisesRegex(ayumi.Error, words) as caught:
+                call()
+            self.assertEqual(caught.exception.code, "usage")
+            self.assertNotIn("--", str(caught.exception))
+
+    def test_states_are_finite(self):
+        theta = np.zeros(20)
+        with self.assertRaisesRegex(ayumi.Error, "position of the state has the value nan at index 1"):
+            ayumi.RobotState(theta, position=[0, np.nan, 0])
+        with self.assertRaisesRegex(ayumi.Error, "attitude of the state has the length 0; "):
+            ayumi.RobotState(theta, attitude=(0, 0, 0, 0))
 
 
 class LongWork(unittest.TestCase):
@@ -520,7 +562,8 @@ class InTheLoop(unittest.TestCase):
                 super().step(targets, input, dt)
                 return ayumi.StepReport(np.full(len(targets), np.nan), [], [])
 
-        with self.assertRaisesRegex(ayumi.Error, "reports a torque of nan; numbers below 1e6"):
+        with self.assertRaisesRegex(ayumi.Error, "reports a torque of nan; numbers below 1e6 .* "
+                                    "the step began 0.000 s after the plant's start"):
             ayumi.simulate(self.task, plant=lambda *about: WithoutTorques(*about, 0.0))
 
         def fails(*_):
@@ -599,6 +642,14 @@ class Recordings(unittest.TestCase):
                 ayumi.import_motion(file, robot)
             self.assertEqual(raised.exception.code, "bad_file")
             self.assertEqual(raised.exception.place, str(file))
+            nan = float("nan")
+            for options, words in (({"rate": nan}, "rate of the rows is nan 1/s; "),
+                                   ({"ramp": nan}, "time of the ramp is nan s; "),
+                                   ({"ramp": 1e9}, "time of the ramp is 1e.09 s; "),
+                                   ({"smooth": -1}, "change by smoothing is -1 deg; "),
+                                   ({"contact_height": nan}, "carries the robot is nan m; ")):
+                with self.assertRaisesRegex(ayumi.Error, words):
+                    ayumi.import_motion(file, robot, **options)
 
     def test_servos_are_found_in_a_simulated_recording(self):
         robot = ayumi.load_robot("hoap1", meshes=False)

@@ -230,6 +230,10 @@ TEST_F(Clip, ErrorsSayWhatIsWrongAndLeaveNothing) {
                 .find("the clip would have 3e+10 frames, and at most 1e+06 are possible"),
             std::string::npos);
   options.speed = 1;
+  options.threads = -1;
+  EXPECT_NE(message_of(folder / "a.mp4", ErrorCode::usage).find("the number of threads is -1"),
+            std::string::npos);
+  options.threads = 1;
   options.encoder = "no-such-encoder";
   EXPECT_NE(message_of(folder / "a.mp4", ErrorCode::bad_file).find("install ffmpeg"),
             std::string::npos);

@@ -4,6 +4,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "tests/render/box_robot.hpp"
+#include "tests/support/error_message.hpp"
 
 namespace ayumi::test {
 namespace {
@@ -155,9 +156,27 @@ TEST(Strip, NothingAndTooMuchAreRefused) {
   const SimulationLog log = box_run(model);
   EXPECT_THROW(draw_strip(model, log, small(0)), Error);
   EXPECT_THROW(draw_sheet({}, 3), Error);
+  const auto refused = [&](int count, int columns) {
+    StripOptions options = small(count);
+    options.columns = columns;
+    return error_message([&] { draw_strip(model, log, options); }, ErrorCode::usage);
+  };
+  EXPECT_EQ(refused(1'000'000'000, 4),
+            "the number of snapshots is 1e+09; it must be from 1 to 400");
+  EXPECT_EQ(refused(4, -1), "the number of columns is -1; it must be from 1 to 100");
+  StripOptions wide = small(40);
+  wide.columns = 40;
+  wide.clip.picture.width = 1000;
+  EXPECT_EQ(
+      error_message([&] { draw_strip(model, log, wide); }, ErrorCode::usage),
+      "a sheet of 40 pictures would have 40000 x 48 pixels; it needs one picture or more, and "
+      "at most 16384 pixels a side");
   StripOptions one = small(0);
   one.one_picture = true;
   EXPECT_THROW(draw_strip(model, log, one), Error);
+  one.count = 101;
+  EXPECT_EQ(error_message([&] { draw_strip(model, log, one); }, ErrorCode::usage),
+            "the number of postures is 101; it must be from 1 to 100");
   try {
     draw_sheet(std::vector<Image>(5, tile(4000, 1, 0)), 5);
     FAIL();

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <functional>
+
 #include "ayumi/author/generate/generate.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
@@ -13,6 +16,7 @@
 #include "ayumi/repair/motion_change.hpp"
 #include "ayumi/repair/policy.hpp"
 #include "ayumi/repair/repair_pattern.hpp"
+#include "tests/support/error_message.hpp"
 #include "tests/support/limited_biped.hpp"
 #include "tests/support/random_robot.hpp"
 #include "tests/support/ten_faults.hpp"
@@ -245,6 +249,21 @@ TEST(Repair, WhatHasNoSolutionIsRefusedWithReasons) {
   const RepairResult r = repair(RobotModel(d), good_walk(), options);
   EXPECT_NE(r.status, RepairStatus::repaired);
   ASSERT_FALSE(r.reasons.empty());
+}
+
+// The options are refused even if there is nothing to repair.
+TEST(Repair, RefusesOptionsOutOfBounds) {
+  const auto refused = [](const std::function<void(RepairOptions&)>& change) {
+    RepairOptions options;
+    change(options);
+    return error_message([&] { repair(limited_biped(), good_walk(), options); }, ErrorCode::usage);
+  };
+  EXPECT_EQ(refused([](RepairOptions& o) { o.max_iterations = -1; }),
+            "the largest number of iterations is -1; it must be from 1 to 10000");
+  EXPECT_EQ(refused([](RepairOptions& o) { o.safety = NAN; }),
+            "the weight of safety is nan; it must be from 0 to 1e+06");
+  EXPECT_EQ(refused([](RepairOptions& o) { o.zmp_margin = NAN; }),
+            "the wanted margin of the ZMP is nan m; it must be from 0 to 0.1 m");
 }
 
 TEST(Repair, StopsWhenTold) {

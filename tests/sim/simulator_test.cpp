@@ -4,14 +4,18 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <memory>
 
 #include "ayumi/author/generate/generate.hpp"
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
 #include "ayumi/io/run/simulation_log_file.hpp"
 #include "ayumi/plan/sample.hpp"
+#include "tests/support/error_message.hpp"
 
 namespace ayumi {
 namespace {
@@ -329,6 +333,19 @@ TEST(Simulator, OffsetsThatTheFileStatesDoNotChangeTheMotion) {
   const int elbow = unit.find_dof("l_elbow");
   EXPECT_NEAR(other.samples.back().state.theta[elbow] - expected.samples.back().state.theta[elbow],
               offset, 0.01 * offset);
+}
+
+TEST(Simulate, RefusesANumberOfSubstepsOutOfBounds) {
+  const Stand stand;
+  for (const int substeps : {0, 101, std::numeric_limits<int>::max()}) {
+    SimulateOptions options;
+    options.controller.type = ControllerKind::none;
+    options.substeps = substeps;
+    EXPECT_EQ(test::error_message([&] { simulate(stand.model, stand.series, options); },
+                                  ErrorCode::usage),
+              "the number of integrator steps per servo period is " + text::exact(substeps) +
+                  "; it must be from 1 to 100");
+  }
 }
 
 }  // namespace

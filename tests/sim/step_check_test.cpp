@@ -10,6 +10,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/sim/plant/plant.hpp"
+#include "tests/support/biped.hpp"
 #include "tests/support/block.hpp"
 #include "tests/support/error_message.hpp"
 #include "tests/support/random_robot.hpp"
@@ -104,6 +105,28 @@ TEST(StepCheck, RefusesAWorldThatIsNone) {
     expect("field", World{.fields = {field}});
   }
   expect("friction", World{.friction = -0.1});
+}
+
+TEST(StepCheck, RefusesAReportThatIsNone) {
+  const RobotModel model = test::biped();
+  for (const double bad : kBad) {
+    const auto expect = [&](const std::string& place,
+                            const std::function<void(StepReport&)>& spoil) {
+      StepReport report;
+      report.torque = VectorXd::Zero(model.dof_count());
+      for (const Side side : {Side::left, Side::right})
+        report.soles[static_cast<size_t>(side)].resize(model.sole(side).polygon.size());
+      check_report(model, report);
+      spoil(report);
+      const std::string text =
+          test::error_message([&] { check_report(model, report); }, ErrorCode::usage);
+      EXPECT_NE(text.find(place), std::string::npos) << text;
+    };
+    expect("a torque of", [&](StepReport& r) { r.torque[0] = bad; });
+    expect("a force at a sole of", [&](StepReport& r) { r.soles[0][0].force.z() = bad; });
+    expect("a place of a sole at", [&](StepReport& r) { r.soles[0][0].position.x() = bad; });
+    expect("a gap of a sole of", [&](StepReport& r) { r.soles[0][0].gap = bad; });
+  }
 }
 
 }  // namespace

@@ -6,10 +6,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "ayumi/author/edit/edit.hpp"
 #include "ayumi/author/generate/generate.hpp"
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
 #include "ayumi/demand/motion_demand.hpp"
 #include "ayumi/math/random.hpp"
 #include "ayumi/model/gravity.hpp"
@@ -18,6 +21,7 @@
 #include "ayumi/sim/simulate.hpp"
 #include "ayumi/study/pauses.hpp"
 #include "ayumi/study/retime.hpp"
+#include "tests/support/error_message.hpp"
 #include "tests/support/hoap1.hpp"
 
 namespace ayumi::test {
@@ -358,6 +362,23 @@ TEST(LocalRetime, OtherTimingsAreTriedIfTheFirstFalls) {
     EXPECT_EQ(safe.uniform, safe.binding.empty());
     EXPECT_TRUE(safe.report.consistent);
     EXPECT_EQ(open_loop(hoap1(), safe.series), Outcome::stands);
+  }
+}
+
+TEST(LocalRetime, RefusesAMarginOutOfBoundsAndANameThatIsNone) {
+  const Pattern squat = squat_pattern(hoap1(), {.cycles = 1});
+  for (const double margin : {-1.0, 1.5, std::nan("")}) {
+    LocalRetimeOptions options;
+    options.path.most_margin = margin;
+    const std::string message =
+        error_message([&] { local_pace(hoap1(), squat, options); }, ErrorCode::usage);
+    EXPECT_EQ(message, "the largest margin of the ZMP is " + text::exact(margin) +
+                           " m; it must be from 0 to 1 m");
+  }
+  for (const std::string& name : {std::string(), std::string("a\0b", 3)}) {
+    const std::string message =
+        error_message([&] { fastest_local_pace(hoap1(), squat, name, {}); }, ErrorCode::usage);
+    EXPECT_NE(message.find("needs a file name"), std::string::npos) << message;
   }
 }
 

@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 
 #include "ayumi/author/generate/generate.hpp"
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "ayumi/study/tune.hpp"
@@ -140,16 +142,24 @@ TEST(Push, RefusesStudiesThatCannotBeDone) {
     return test::error_message(
         [&] { push_limits(stand.model, stand.series, stand.options, {}, {}); });
   };
-  const std::string resolution =
-      "push: the resolution of the search must be above 0 and at most the largest push (--cap)";
   EXPECT_EQ(refused([](Stand& s) { s.options.directions = 0; }),
-            "push: directions: 0; give 1 to 360");
+            "push: the number of directions is 0; it must be from 1 to 360");
   EXPECT_EQ(refused([](Stand& s) { s.options.directions = 361; }),
-            "push: directions: 361; give 1 to 360");
-  EXPECT_EQ(refused([](Stand& s) { s.options.step = 0; }), resolution);
-  EXPECT_EQ(refused([](Stand& s) { s.options.cap = 0.3; }), resolution);
+            "push: the number of directions is 361; it must be from 1 to 360");
+  const std::string resolution = "push: the resolution of the search is ";
+  const std::string bounds = " capture bounds; it must be from 0.005 to 1 capture bounds";
+  EXPECT_EQ(refused([](Stand& s) { s.options.step = 0; }), resolution + "0" + bounds);
+  EXPECT_EQ(refused([](Stand& s) { s.options.step = 1e-300; }), resolution + "1e-300" + bounds);
+  EXPECT_EQ(refused([](Stand& s) { s.options.cap = INFINITY; }),
+            "push: the largest push is inf capture bounds; it must be from 0.1 to 20 capture "
+            "bounds");
+  EXPECT_EQ(refused([](Stand& s) { s.options.cap = 0.3; }),
+            "push: the largest push is 0.3 capture bounds; it must be at least the resolution of "
+            "the search, 0.4 capture bounds");
+  EXPECT_EQ(refused([](Stand& s) { s.options.duration = NAN; }),
+            "push: the duration of a push is nan s; it must be from 0.001 to 1 s");
   EXPECT_EQ(refused([](Stand& s) { s.options.replicas = -1; }),
-            "push: the number of replicas must not be negative");
+            "push: the number of variations is -1; it must be from 0 to 100");
   EXPECT_EQ(refused([](Stand& s) { s.series.samples.clear(); }),
             "the motion has no samples; sample a pattern first");
   EXPECT_NE(refused([](Stand& s) { s.options.phases = {{"late", 0.99, false}}; }), "no error");
@@ -167,10 +177,17 @@ TEST(Tune, RefusesSearchesThatCannotBeDone) {
   };
   EXPECT_EQ(refused([](TuneOptions& o) { o.simulate.controller.type = ControllerKind::viip; }),
             "tune: controller 'viip' has no gains to tune; use dtad");
-  EXPECT_EQ(refused([](TuneOptions& o) { o.directions = 0; }), "tune: directions: give 1 to 360");
-  EXPECT_EQ(refused([](TuneOptions& o) { o.level = 0; }), "tune: level must be positive");
+  EXPECT_EQ(refused([](TuneOptions& o) { o.directions = 0; }),
+            "tune: the number of directions is 0; it must be from 1 to 360");
+  EXPECT_EQ(refused([](TuneOptions& o) { o.level = 0; }),
+            "tune: the size of a push is 0 capture bounds; it must be from 0.01 to 5 capture "
+            "bounds");
+  EXPECT_EQ(refused([](TuneOptions& o) { o.threads = -1; }),
+            "tune: the number of threads is -1; it must be from 0 to 1024");
   EXPECT_EQ(refused([](TuneOptions& o) { o.factor = 1; }), "tune: factor must exceed 1");
-  EXPECT_EQ(refused([](TuneOptions& o) { o.rounds = 0; }), "tune: rounds must be at least 1");
+  for (const int rounds : {0, 1'000'000'000})
+    EXPECT_EQ(refused([&](TuneOptions& o) { o.rounds = rounds; }),
+              "tune: the number of rounds is " + text::exact(rounds) + "; it must be from 1 to 50");
   EXPECT_EQ(refused([](TuneOptions& o) { o.gains.clear(); }), "tune: give at least one gain");
   const std::string unknown = refused([](TuneOptions& o) { o.gains = {"ksx"}; });
   EXPECT_NE(unknown.find("tune: gain 'ksx' cannot be tuned; did you mean 'ks'?"), std::string::npos)

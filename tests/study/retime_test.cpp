@@ -5,8 +5,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "ayumi/author/edit/edit.hpp"
 #include "ayumi/author/generate/generate.hpp"
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "tests/support/error_message.hpp"
 #include "tests/support/faults.hpp"
@@ -90,6 +94,17 @@ TEST(Retime, APostureThatIsWrongIsToldAtOnce) {
   EXPECT_EQ(pace.evaluations, 1);
   EXPECT_NE(pace.limited_by.find("joint_position of l_elbow at 2.0"), std::string::npos)
       << pace.limited_by;
+}
+
+TEST(Retime, RefusesAResolutionOutOfBounds) {
+  const Pattern squat = squat_pattern(hoap1(), {.cycles = 1});
+  for (const double resolution : {0.0, -1.0, std::nan("")}) {
+    RetimeOptions options;
+    options.resolution = resolution;
+    EXPECT_EQ(error_message([&] { fastest_pace(hoap1(), squat, options); }, ErrorCode::usage),
+              "the resolution of the scale is " + text::exact(resolution) +
+                  "; it must be from 1e-05 to 0.5");
+  }
 }
 
 }  // namespace ayumi::test

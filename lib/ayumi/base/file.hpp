@@ -34,8 +34,8 @@ void write_file_with(const std::filesystem::path& path,
 /// Makes a folder if necessary and locks it against every other FolderLock on it, in this and in
 /// other processes. The operating system ends the lock with the process, however the process ends;
 /// only the hidden file `.ayumi_lock` may then stay behind, which the next lock takes over. The
-/// destructor removes that file; it also removes the folder if this lock has made it and it is
-/// empty.
+/// destructor removes that file; it also removes the folder, and the folders around it, if this
+/// lock has made them and they are empty.
 class FolderLock {
  public:
   /// Throws Error(bad_file) with the folder if it cannot be made, or if another process holds it.
@@ -46,7 +46,7 @@ class FolderLock {
 
  private:
   std::filesystem::path folder_, file_;
-  bool made_ = false;
+  int made_ = 0;  // number of folders that the lock has made
   int descriptor_ = -1;
 };
 

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 
@@ -25,6 +26,15 @@ bool is_file_of(int descriptor, const fs::path& path) {
          opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
 }
 
+// Number of folders that do not exist: this one, the one around it, and so on.
+int missing_folders(const fs::path& folder) {
+  std::error_code error;
+  int missing = 0;
+  for (fs::path at = folder; !at.empty() && !fs::exists(at, error) && !error; at = at.parent_path())
+    ++missing;
+  return missing;
+}
+
 }  // namespace
 
 LockedFolder lock_folder(const fs::path& folder, const std::string& name, const std::string& busy) {
@@ -36,10 +46,11 @@ LockedFolder lock_folder(const fs::path& folder, const std::string& name, const 
   const auto stop = [&](const std::string& reason) {
     fail(ErrorCode::bad_file, {name}, (reason == busy ? "" : own) + reason);
   };
-  LockedFolder locked{.folder = folder, .file = folder / ".ayumi_lock"};
+  LockedFolder locked{.folder = (folder / "").parent_path(), .file = folder / ".ayumi_lock"};
   for (int i = 0; i < kTries; ++i) {
     std::error_code error;
-    locked.made = fs::create_directories(folder, error) || locked.made;
+    locked.made = std::max(locked.made, missing_folders(locked.folder));
+    fs::create_directories(folder, error);
     if (error) stop("cannot be made (" + error.message() + ")");
     const int descriptor =
         ::open(locked.file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
@@ -66,7 +77,9 @@ LockedFolder lock_folder(const fs::path& folder, const std::string& name, const 
 void unlock_folder(const LockedFolder& locked) {
   ::unlink(locked.file.c_str());
   ::close(locked.descriptor);
-  if (locked.made) ::rmdir(locked.folder.c_str());  // this only succeeds for an empty folder
+  fs::path folder = locked.folder;
+  for (int i = 0; i < locked.made && ::rmdir(folder.c_str()) == 0; ++i)  // only if it is empty
+    folder = folder.parent_path();
 }
 
 FileLock::FileLock(const fs::path& file)

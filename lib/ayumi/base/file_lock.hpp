@@ -10,7 +10,7 @@ namespace ayumi {
 /// A folder that is locked by the file `.ayumi_lock` in it. It is made if necessary.
 struct LockedFolder {
   std::filesystem::path folder, file;
-  bool made = false;  ///< the lock has made the folder
+  int made = 0;  ///< how many folders the lock has made: this one, the one around it, and so on
   int descriptor = -1;
 };
 
@@ -18,7 +18,8 @@ struct LockedFolder {
 /// `busy` says that another process holds it.
 LockedFolder lock_folder(const std::filesystem::path& folder, const std::string& name,
                          const std::string& busy);
-/// Removes the file of the lock; also removes the folder if the lock has made it and it is empty.
+/// Removes the file of the lock; also removes the folders that the lock has made and that are
+/// empty.
 void unlock_folder(const LockedFolder& locked);
 
 /// Locks a file that several programs could write, against every other FileLock on it. The lock is

@@ -8,14 +8,22 @@
 #include <thread>
 #include <vector>
 
+#include "ayumi/base/bounds.hpp"
+
 namespace ayumi {
+
+/// Number of threads that a caller may choose; 0 is one for each processor. Chosen: a larger number
+/// is a slip, because so many threads would only wait for each other.
+inline constexpr Bounds kThreadBounds = {0, 1024};
 
 /// Runs job(0..count-1) on threads. After an exception, no further jobs are started. Of several
 /// exceptions, that of the first job in order is thrown again. This exception is the same for any
 /// number of threads, because all jobs before that job were started. If the system grants no
-/// further thread, the existing threads do the work.
+/// further thread, the existing threads do the work. Throws Error(usage) for a number of threads
+/// beyond kThreadBounds.
 template <typename Job>
 void in_parallel(size_t count, int threads, std::atomic<bool>& stop, const Job& job) {
+  require_within("the number of threads", threads, kThreadBounds);
   std::atomic<size_t> next = 0;
   std::exception_ptr error;
   size_t failed = count;

@@ -1,7 +1,8 @@
 #pragma once
-// Shortens text that has to fit into a picture.
+// Shortens text that has to fit into a picture or a message.
 
 #include <string>
+#include <string_view>
 
 namespace ayumi::text {
 
@@ -16,6 +17,16 @@ std::string shortened(std::string text, const Fits& fits) {
     text.pop_back();
   }
   return text + dots;
+}
+
+/// The text as a message quotes it: its first 100 bytes, with dots behind them if there are more.
+/// Chosen: the names and expressions of people are shorter, and a terminal shows this in two lines.
+inline std::string quotable(std::string_view text) {
+  constexpr size_t kMostQuoted = 100;
+  if (text.size() <= kMostQuoted) return std::string(text);
+  size_t end = kMostQuoted;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
+  return std::string(text.substr(0, end)) + "…";
 }
 
 }  // namespace ayumi::text

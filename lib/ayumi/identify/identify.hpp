@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "ayumi/base/bounds.hpp"
 #include "ayumi/base/progress.hpp"
 #include "ayumi/identify/joint_loads.hpp"
 #include "ayumi/model/robot_model.hpp"
@@ -14,6 +15,10 @@
 namespace ayumi {
 
 struct IdentifyOptions {
+  /// Bounds of longest_lag, where it is not 0. Chosen: one tick of a servo of 1 kHz, and a time
+  /// after which no robot can walk any more.
+  static constexpr Bounds kLongestLag = {0.001, 0.5, "s"};
+
   bool per_type = false;  ///< one set of constants for all joints of one motor type
   RobotStand stand = RobotStand::feet;
   double longest_lag = 0;  ///< largest lag of a servo [s]; with 0, the value of longest_lag()

@@ -5,9 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "ayumi/base/bounds.hpp"
 #include "ayumi/model/encoder_angles.hpp"
 
 namespace ayumi {
+
+/// Bounds of the rate of a recording. Chosen: a slower recorder misses the motion, and no servo
+/// reports its angle more often.
+inline constexpr Bounds kRecordingRate = {1, 1e5, "1/s"};
 
 /// Joint angles at a fixed rate. Row k is at time k dt.
 struct AngleTable {

@@ -230,7 +230,7 @@ void require_answer(const RobotModel& model, const AngleTable& command, const An
       complain("the angles are " + text::fixed(1000 * std::abs(shift), 0) + " ms " +
                (shift > 0 ? "behind" : "ahead of") + " their command" +
                (shift > 0 ? ", but a servo is at most " + text::fixed(1000 * longest_lag, 0) +
-                                " ms behind (--longest-lag)"
+                                " ms behind (the longest lag)"
                           : "") +
                "; the recording is shifted, so let the recording and the command begin at the same "
                "time");

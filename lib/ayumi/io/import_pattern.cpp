@@ -38,6 +38,17 @@ void add_ramps(double seconds, const RobotModel& model, ImportedMotion& imported
       " s pass between rest and the recorded speed, and the path stays as recorded");
 }
 
+void require_bounds(const PatternImport& options) {
+  if (options.ramp != 0) require_within("the time of the ramp", options.ramp, PatternImport::kRamp);
+  const ContactThresholds& contact = options.contact;
+  require_within("the largest height of a sole that carries the robot", contact.height,
+                 ContactThresholds::kHeight);
+  require_within("the largest speed of a sole that carries the robot", contact.speed,
+                 ContactThresholds::kSpeed);
+  require_within("the smallest vertical force of a contact", contact.load,
+                 ContactThresholds::kLoad);
+}
+
 ImportedPattern of_keys(ImportedKeys keys, const PatternImport& options) {
   ImportedPattern result;
   result.pattern = std::move(keys.pattern);
@@ -83,6 +94,7 @@ bool is_pattern_text(const std::string& bytes) {
 
 ImportedPattern import_pattern(const std::string& bytes, const std::string& file,
                                const RobotModel& model, const PatternImport& options) {
+  require_bounds(options);
   if (is_pattern_text(bytes))
     fail(ErrorCode::bad_file, {file},
          "this is a pattern already; import reads motions in the formats " +

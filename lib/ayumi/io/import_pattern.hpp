@@ -19,6 +19,10 @@ namespace ayumi {
 inline constexpr size_t kLargestMotionFile = 64'000'000;
 
 struct PatternImport {
+  /// Bounds of the ramp, where it is not 0. Chosen: 20 ms are a row of most recordings, and a robot
+  /// that speeds up for 10 s does another motion.
+  static constexpr Bounds kRamp = {0.02, 10, "s"};
+
   ImportOptions reading = {};
   ContactThresholds contact = {};  ///< settings for the detection of contacts
   bool ground = false;             ///< the soles that carry the robot are put on the ground
@@ -38,7 +42,8 @@ struct ImportedPattern {
 /// Whether the bytes of a file that should hold a motion or a table are those of a pattern.
 bool is_pattern_text(const std::string& bytes);
 
-/// `bytes` are the content of `file`. Throws Error(bad_file) that names file, place and remedy.
+/// `bytes` are the content of `file`. Throws Error(bad_file) that names file, place and remedy,
+/// and Error(usage) for options out of bounds.
 ImportedPattern import_pattern(const std::string& bytes, const std::string& file,
                                const RobotModel& model, const PatternImport& options = {});
 

@@ -298,11 +298,8 @@ void add_to_report(SafetyReport& report, const std::vector<SafetyViolation>& vio
 // The ramp and the hold that the options require. A ramp that is too long is replaced by the
 // shortest one, whose steps are then violations.
 LaidMotion laid(const RobotModel& model, const TargetRows& targets, const SafetyOptions& options) {
-  for (const auto& [name, value] : {std::pair("ramp", options.ramp), {"hold", options.hold}})
-    if (!(value >= 0 && value <= SafetyOptions::kLongestRest))
-      fail(ErrorCode::usage, std::string("the ") + name + " of the table is " + text::brief(value) +
-                                 " s; it must be from 0 to " +
-                                 text::brief(SafetyOptions::kLongestRest) + " s");
+  require_within("the ramp of the table", options.ramp, SafetyOptions::kRest);
+  require_within("the hold of the table", options.hold, SafetyOptions::kRest);
   const std::vector<Eigen::Index> columns = columns_of(model, targets.joints, targets.count);
   LaidMotion plan;
   targets.row(0, plan.target);

@@ -8,15 +8,16 @@
 #include <string>
 #include <vector>
 
+#include "ayumi/base/bounds.hpp"
 #include "ayumi/model/robot_model.hpp"
 #include "ayumi/motion/reference_trajectory.hpp"
 
 namespace ayumi {
 
 struct SafetyOptions {
-  /// Longest ramp and longest hold [s]. Chosen: a robot that approaches or waits for longer than a
+  /// Bounds of the ramp and of the hold. Chosen: a robot that approaches or waits for longer than a
   /// minute looks as if it had stopped.
-  static constexpr double kLongestRest = 60;
+  static constexpr Bounds kRest = {0, 60, "s"};
 
   std::string profile;        ///< actuator profile for the speed limits; "" for the default
   double ramp = 2.0;          ///< smallest duration of the approach [s]; 0 for no ramp

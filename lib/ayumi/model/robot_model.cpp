@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/shortened_text.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/model/servo_bounds.hpp"
@@ -374,7 +375,8 @@ const ActuatorLimits& RobotModel::limits(const std::string& profile) const {
   if (profile.empty()) return limits_.front();
   for (const ActuatorLimits& limits : limits_)
     if (limits.name == profile) return limits;
-  fail(ErrorCode::bad_model, "the robot '" + name() + "' has no actuator profile '" + profile +
+  fail(ErrorCode::bad_model, "the robot '" + name() + "' has no actuator profile '" +
+                                 text::quotable(profile) +
                                  "'; known: " + text::join(profile_names(), ", ") +
                                  text::suggestion(profile, profile_names()));
 }

@@ -533,7 +533,7 @@ bool shows_moved(const LociOptions& options) {
 }  // namespace
 
 Drawing draw_loci(const std::vector<LociRun>& as_logged, const LociOptions& options) {
-  const Interval time = time_range(as_logged, options);
+  const Interval time = time_range(options.model, as_logged, options);
   const FramedRuns framed(options.model, as_logged, options.frame);
   const std::vector<LociRun>& runs = framed.runs;
   std::vector<PanelPlan> panels = plan_panels(options);

@@ -36,11 +36,18 @@ LineStyle run_style(size_t index, size_t count) {
 
 bool has_fallen(const SimulationLog& log) { return log.result.outcome == Outcome::fell; }
 
-Interval time_range(const std::vector<LociRun>& runs, const LociOptions& options) {
+Interval time_range(const RobotModel* model, const std::vector<LociRun>& runs,
+                    const LociOptions& options) {
   if (runs.empty()) fail(ErrorCode::usage, "plot: there is no run to draw");
   if (runs.size() > kMostRuns)
     fail(ErrorCode::usage, "plot: " + std::to_string(runs.size()) + " runs are too many; at most " +
                                std::to_string(kMostRuns) + " can be told apart in one plot");
+  for (const LociRun& run : runs)
+    if (model && run.log->joints != model->dof_names())
+      fail(ErrorCode::usage,
+           "plot: run '" + run.label + "' has " + std::to_string(run.log->joints.size()) +
+               " joints, but not those of robot '" + model->name() + "', which has " +
+               std::to_string(model->dof_count()) + "; give runs of this robot");
   double last = 0;
   for (const LociRun& run : runs) last = std::max(last, duration(*run.log));
   const double end = options.end < 0 ? last : std::min(options.end, last);

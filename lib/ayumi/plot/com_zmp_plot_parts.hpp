@@ -27,7 +27,8 @@ LineStyle run_style(size_t index, size_t count);
 bool has_fallen(const SimulationLog& log);
 
 /// The interval of time that is shown. Throws the same Error(usage) as draw_loci().
-Interval time_range(const std::vector<LociRun>& runs, const LociOptions& options);
+Interval time_range(const RobotModel* model, const std::vector<LociRun>& runs,
+                    const LociOptions& options);
 
 /// The pushes of all runs in this interval. A push that is the same in several runs is listed once.
 std::vector<PushRecord> all_pushes(const std::vector<LociRun>& runs, const Interval& time);

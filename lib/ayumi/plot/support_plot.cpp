@@ -194,7 +194,7 @@ void label_footholds(Drawing& drawing, const Axes& axes, const std::vector<Place
 
 Drawing draw_support(const RobotModel& model, const std::vector<LociRun>& as_logged,
                      const LociOptions& options) {
-  const Interval time = time_range(as_logged, options);
+  const Interval time = time_range(&model, as_logged, options);
   const FramedRuns framed(&model, as_logged, options.frame);
   const std::vector<LociRun>& runs = framed.runs;
   Drawing drawing = start_drawing(runs, options, "COG and ZMP from above");

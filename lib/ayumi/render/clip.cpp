@@ -17,6 +17,7 @@
 #include <thread>
 
 #include "ayumi/base/file.hpp"
+#include "ayumi/base/in_parallel.hpp"
 #include "ayumi/base/shortened_text.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/render/encoder.hpp"
@@ -61,6 +62,7 @@ void check(const RobotModel& model, const SimulationLog& log, const ClipOptions&
   need(
       options.fps > 0 && options.fps <= 1000,
       "fps: " + text::exact(options.fps) + " is not possible; give a number above 0, at most 1000");
+  require_within("the number of threads", options.threads, kThreadBounds);
   need(options.speed > 0 && std::isfinite(options.speed),
        "speed: " + text::exact(options.speed) + " is not possible; give a number above 0");
   need(options.begin >= 0 && options.begin <= last,

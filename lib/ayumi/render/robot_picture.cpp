@@ -1,5 +1,9 @@
 #include "ayumi/render/robot_picture.hpp"
 
+#include <cmath>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/model/body_poses.hpp"
 #include "ayumi/render/clip.hpp"
@@ -11,6 +15,11 @@ namespace {
 /// A posture on the ground with its COG, in the form of a log, so that it is drawn like an instant
 /// of a run. The lower sole is on the ground.
 SimulationLog stand_of(const RobotModel& model, const Eigen::VectorXd& theta) {
+  for (Eigen::Index j = 0; j < theta.size(); ++j)
+    if (!std::isfinite(theta[j]))
+      fail(ErrorCode::usage, "the posture of the picture has " + text::exact(theta[j]) + " for " +
+                                 model.dofs()[static_cast<size_t>(j)].name +
+                                 "; every joint needs a finite number");
   SimulationLog log;
   log.joints = model.dof_names();
   log.dt = 1e-3;

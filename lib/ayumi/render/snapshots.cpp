@@ -30,17 +30,32 @@ Image with_lines(const Image& tiled, int tile_height, const ClipRenderer& render
   return sheet;
 }
 
+// Throws Error(usage) if a sheet of `count` pictures of this size [pixel] cannot be made. This is
+// tested before the pictures are drawn, which takes long.
+void require_sheet(long count, int columns, long width, long height) {
+  // Largest width and height of a sheet [pixel]. Chosen: 0.8 GB of memory for a square sheet.
+  constexpr long kLargestSide = 16384;
+  const long across = std::clamp<long>(columns, 1, std::max(1L, count));
+  const long down = (count + across - 1) / across;
+  if (count < 1 || width * across > kLargestSide || height * down > kLargestSide)
+    fail(ErrorCode::usage, "a sheet of " + std::to_string(count) + " pictures would have " +
+                               std::to_string(width * across) + " x " +
+                               std::to_string(height * down) +
+                               " pixels; it needs one picture or more, and at most 16384 pixels a "
+                               "side");
+}
+
 }  // namespace
 
 Image draw_sheet(const std::vector<Image>& tiles, int columns) {
   const int count = static_cast<int>(tiles.size());
+  const int width = tiles.empty() ? 0 : tiles.front().width;
+  const int height = tiles.empty() ? 0 : tiles.front().height;
   const int across = std::clamp(columns, 1, std::max(1, count));
-  const int down = (count + across - 1) / across;
+  require_sheet(count, columns, width, height);
   Image sheet;
-  sheet.width = tiles.empty() ? 0 : tiles.front().width * across;
-  sheet.height = tiles.empty() ? 0 : tiles.front().height * down;
-  if (tiles.empty() || sheet.width > 16384 || sheet.height > 16384)
-    fail(ErrorCode::usage, "a strip needs at least one snapshot and at most 16384 pixels a side");
+  sheet.width = width * across;
+  sheet.height = height * ((count + across - 1) / across);
   sheet.rgb.assign(3 * static_cast<size_t>(sheet.width) * static_cast<size_t>(sheet.height), 255);
   for (int i = 0; i < count; ++i) {
     const Image& tile = tiles[static_cast<size_t>(i)];
@@ -52,6 +67,10 @@ Image draw_sheet(const std::vector<Image>& tiles, int columns) {
 Image draw_strip(const RobotModel& model, const SimulationLog& log, const StripOptions& options,
                  const Progress& progress, std::vector<std::string>* notes) {
   const double last = duration(log);
+  require_within(options.one_picture ? "the number of postures" : "the number of snapshots",
+                 options.times.empty() ? options.count : static_cast<double>(options.times.size()),
+                 options.one_picture ? StripOptions::kExposures : StripOptions::kCount);
+  require_within("the number of columns", options.columns, StripOptions::kColumns);
   std::vector<double> times =
       options.times.empty() ? telling_instants(log, options.count) : options.times;
   for (double& t : times) t = std::clamp(t, 0.0, last);
@@ -70,6 +89,8 @@ Image draw_strip(const RobotModel& model, const SimulationLog& log, const StripO
     report(progress, {"snapshots", 0, ""});
     return true;
   };
+  require_sheet(static_cast<long>(times.size()), options.columns, clip.picture.width,
+                clip.picture.height);
   ClipRenderer renderer(model, log, clip, clip_shape(model, log, clip, false, alive));
   if (notes) *notes = renderer.notes();
   renderer.frame_robot(times);

@@ -6,11 +6,17 @@
 #include <string>
 #include <vector>
 
+#include "ayumi/base/bounds.hpp"
 #include "ayumi/render/clip.hpp"
 
 namespace ayumi {
 
 struct StripOptions {
+  /// Bounds of the numbers of snapshots, of columns, and of postures in one picture. Chosen: in the
+  /// largest sheet, 100 columns are 164 pixels wide, and 20 x 20 snapshots are already more than
+  /// anybody compares. 100 postures cover each other.
+  static constexpr Bounds kCount = {1, 400}, kColumns = {1, 100}, kExposures = {1, 100};
+
   ClipOptions clip;           ///< options of the pictures; their size is that of one snapshot
   std::vector<double> times;  ///< instants [s]; if empty, `count` telling_instants()
   int count = 8;
@@ -24,8 +30,9 @@ struct StripOptions {
 Image draw_sheet(const std::vector<Image>& tiles, int columns);
 
 /// All snapshots in reading order, or drawn over each other as seen by a camera that stands still.
-/// Throws the same errors as ClipRenderer, Error(usage) for no snapshots or a picture beyond 16384
-/// pixels, and Interrupted if `progress` says stop. `notes` receives ClipRenderer::notes().
+/// Throws the same errors as ClipRenderer, Error(usage) for options out of bounds or a picture
+/// beyond 16384 pixels, and Interrupted if `progress` says stop. `notes` receives
+/// ClipRenderer::notes().
 Image draw_strip(const RobotModel& model, const SimulationLog& log, const StripOptions& options,
                  const Progress& progress = {}, std::vector<std::string>* notes = nullptr);
 

@@ -137,6 +137,11 @@ RepairResult repair_given(RepairState& state) {
 RepairResult repair(const RobotModel& model, const CommandSeries& series,
                     const RepairOptions& options, const Progress& progress) {
   require_knot_spacing(options, series.dt);
+  require_within("the weight of safety", options.safety, RepairOptions::kSafety);
+  if (options.zmp_margin)
+    require_within("the wanted margin of the ZMP", *options.zmp_margin, RepairOptions::kZmpMargin);
+  require_within("the largest number of iterations", options.max_iterations,
+                 RepairOptions::kMaxIterations);
   RepairState state = repair_state(model, series, options, progress);
   const ConsistencyReport before = state.result.check;
   if (before.consistent) {

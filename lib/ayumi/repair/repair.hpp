@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "ayumi/base/bounds.hpp"
 #include "ayumi/base/progress.hpp"
 #include "ayumi/check/consistency.hpp"
 #include "ayumi/model/robot_model.hpp"
@@ -36,6 +37,11 @@ struct RandomStart {
 };
 
 struct RepairOptions {
+  /// Bounds of the options. Chosen: beyond 1e6, the size of the change has no weight any more; a
+  /// margin of 0.1 m needs soles that are 0.2 m wide; and 10000 iterations take hours.
+  static constexpr Bounds kSafety = {0, 1e6}, kZmpMargin = {0, 0.1, "m"},
+                          kMaxIterations = {1, 10000};
+
   CheckOptions check;
   std::vector<std::string> locked_joints;  ///< joints that stay bit-identical
   std::array<bool, 2> locked_feet = {};    ///< feet that keep their paths (0.01 mm), by Side
@@ -125,8 +131,9 @@ double safe_margin(const RobotModel& model);
 /// one place are named once, where they are worst. Empty if the motion passes.
 std::vector<std::string> remaining_errors(const ConsistencyReport& check);
 
-/// Throws Error(usage) for a joint, window or weight that does not exist or is out of range, and
-/// Interrupted if `progress` stops the work and no partial result is wanted.
+/// Throws Error(usage) for a joint, window or weight that does not exist or is out of range and for
+/// options out of bounds, even if the motion is consistent, and Interrupted if `progress` stops the
+/// work and no partial result is wanted.
 RepairResult repair(const RobotModel& model, const CommandSeries& series,
                     const RepairOptions& options = {}, const Progress& progress = {});
 

@@ -60,7 +60,7 @@ std::string curves(const RobotModel& model, const ReportInput& input, double wid
   options.model = &model;
   options.width = width;
   const Drawing time = draw_loci(runs, options);
-  const Interval range = plot::time_range(runs, options);
+  const Interval range = plot::time_range(&model, runs, options);
   double top = time.height;  // top of the panels, where the cursor begins
   for (const auto& item : time.items)
     if (const auto* path = std::get_if<DrawnPath>(&item); path && path->closed)

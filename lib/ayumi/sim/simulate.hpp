@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "ayumi/base/bounds.hpp"
 #include "ayumi/base/progress.hpp"
 #include "ayumi/model/robot_model.hpp"
 #include "ayumi/motion/command_series.hpp"
@@ -39,6 +40,9 @@ struct RobotUnit {
 };
 
 struct SimulateOptions {
+  /// Bounds of substeps. Chosen: with 100, a run takes about a hundred times as long.
+  static constexpr Bounds kSubsteps = {1, 100};
+
   ControllerSpec controller;
   std::string profile;  ///< actuator profile; "" for the default
   World world;

@@ -10,6 +10,7 @@
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/model/encoder_angles.hpp"
 #include "ayumi/model/gravity.hpp"
+#include "ayumi/sim/log_events.hpp"
 #include "ayumi/sim/plant/plant.hpp"
 #include "ayumi/sim/standing_calibration.hpp"
 
@@ -47,7 +48,8 @@ constexpr double kZmpMinLoad = 0.02;
 const CommandSeries& checked(const CommandSeries& series, const SimulateOptions& options) {
   if (series.samples.empty())
     fail(ErrorCode::bad_pattern, "the motion has no samples; sample a pattern first");
-  if (options.substeps < 1) fail(ErrorCode::usage, "substeps must be at least 1");
+  require_within("the number of integrator steps per servo period", options.substeps,
+                 SimulateOptions::kSubsteps);
   return series;
 }
 
@@ -446,6 +448,7 @@ SimulationLog Simulator::take_log() {
   for (const SimulationEvent& event : schedule_.events()) log.events.push_back(event);
   std::stable_sort(log.events.begin(), log.events.end(),
                    [](const SimulationEvent& a, const SimulationEvent& b) { return a.t < b.t; });
+  limit_events(log.events);
   return log;
 }
 

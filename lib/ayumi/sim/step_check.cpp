@@ -116,6 +116,9 @@ void check_report(const RobotModel& model, const StepReport& report) {
     for (const SoleForce& contact : forces) {
       check("a place of a sole at", contact.position);
       check("a force at a sole of", contact.force);
+      if (!sound(contact.gap))
+        fail(ErrorCode::usage, model.name() + ": the plant reports a gap of a sole of " +
+                                   text::brief(contact.gap) + "; numbers below 1e6 are expected");
     }
   }
 }
@@ -133,7 +136,9 @@ void check_step(const RobotModel& model, const VectorXd& targets, const StepInpu
              count + " joints");
   for (int j = 0; j < model.dof_count(); ++j)
     if (!sound(targets[j]))
-      complain("servo target of " + model.dofs()[j].name + " is " + text::brief(targets[j]));
+      complain("servo target of " + model.dofs()[j].name + " is " + text::brief(targets[j]) +
+               "; a number below 1e6 is expected (with unstable gains, targets grow until they "
+               "exceed it: choose smaller gains)");
   for (const ExternalWrench& w : input.wrenches)
     if (!(sound(w.force) && sound(w.torque) && sound(w.point) && w.body >= -1 &&
           w.body < static_cast<int>(model.bodies().size())))

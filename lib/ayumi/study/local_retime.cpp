@@ -480,6 +480,12 @@ class LocalSearch {
 LocalPace fastest_local_pace(const RobotModel& model, const Pattern& pattern,
                              const std::string& table, const LocalRetimeOptions& options,
                              const Progress& progress) {
+  if (options.path.most_margin != kUnbounded)
+    require_within("the largest margin of the ZMP", options.path.most_margin,
+                   LocalRetimeOptions::kMostMargin);
+  if (table.empty() || table.find('\0') != std::string::npos)
+    fail(ErrorCode::usage,
+         "the table of the new timing needs a file name without the character NUL");
   refuse_viip_phases(pattern, "retimed");
   return LocalSearch(model, pattern, table, options, progress).run();
 }

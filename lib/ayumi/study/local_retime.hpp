@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "ayumi/base/bounds.hpp"
 #include "ayumi/base/progress.hpp"
 #include "ayumi/check/consistency.hpp"
 #include "ayumi/motion/pattern.hpp"
@@ -22,6 +23,10 @@
 namespace ayumi {
 
 struct LocalRetimeOptions {
+  /// Bounds of PathLimitOptions::most_margin, where it is not infinite. Chosen: no sole is so wide
+  /// that its middle is a metre from its edge.
+  static constexpr Bounds kMostMargin = {0, 1, "m"};
+
   PathLimitOptions path;     ///< the search sets its smallest margin and its pauses
   bool keep_pauses = false;  ///< pauses last as long as in the given pattern
   /// The ground on which the robot should stand in open loop if it stands at the uniform pace;
@@ -53,7 +58,7 @@ struct LocalPace {
 
 /// The table of the result gets the file name `table`. Flights keep their pace. Throws
 /// Error(bad_pattern) in the same cases as sample() for a pattern that cannot be sampled, and for a
-/// phase with a goal.
+/// phase with a goal, and Error(usage) for a margin out of bounds or a name that is no file name.
 LocalPace fastest_local_pace(const RobotModel& model, const Pattern& pattern,
                              const std::string& table, const LocalRetimeOptions& options,
                              const Progress& progress = {});

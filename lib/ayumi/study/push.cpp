@@ -237,11 +237,15 @@ void check_options(const PushOptions& options, const CommandSeries& series) {
   const auto refuse = [](const std::string& text) { fail(ErrorCode::usage, "push: " + text); };
   if (series.samples.empty())
     fail(ErrorCode::bad_pattern, "the motion has no samples; sample a pattern first");
-  if (options.directions < 1 || options.directions > 360)
-    refuse("directions: " + std::to_string(options.directions) + "; give 1 to 360");
-  if (!(options.step > 0) || !(options.cap >= options.step))
-    refuse("the resolution of the search must be above 0 and at most the largest push (--cap)");
-  if (options.replicas < 0) refuse("the number of replicas must not be negative");
+  require_within("push: the number of directions", options.directions, PushOptions::kDirections);
+  require_within("push: the resolution of the search", options.step, PushOptions::kStep);
+  require_within("push: the largest push", options.cap, PushOptions::kCap);
+  require_within("push: the number of variations", options.replicas, PushOptions::kReplicas);
+  require_within("push: the duration of a push", options.duration, PushOptions::kDuration);
+  if (options.cap < options.step)
+    refuse("the largest push is " + text::exact(options.cap) +
+           " capture bounds; it must be at least the resolution of the search, " +
+           text::exact(options.step) + " capture bounds");
   for (const PushPhase& phase : options.phases)
     if (!phase.standing && !(phase.at >= options.time_spread + series.dt &&
                              phase.at + options.duration <= series.duration()))

@@ -19,6 +19,13 @@ struct PushPhase {
 };
 
 struct PushOptions {
+  /// Bounds of the options. Chosen: one direction in each degree; beyond the others, a study takes
+  /// days (a finer step, more variations) or its pushes are no longer pushes (20 capture bounds,
+  /// 1 s).
+  static constexpr Bounds kDirections = {1, 360}, kReplicas = {0, 100},
+                          kStep = {0.005, 1, "capture bounds"}, kCap = {0.1, 20, "capture bounds"},
+                          kDuration = {0.001, 1, "s"};
+
   std::vector<PushPhase> phases;            ///< phases; if empty, default_push_phases()
   std::vector<ControllerSpec> controllers;  ///< laws in addition to open loop
   int directions = 8;          ///< number of evenly spread directions, the first along +x

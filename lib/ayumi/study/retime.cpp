@@ -169,6 +169,7 @@ class PaceSearch {
 
 FastestPace fastest_pace(const RobotModel& model, const Pattern& pattern,
                          const RetimeOptions& options, const Progress& progress) {
+  require_within("the resolution of the scale", options.resolution, RetimeOptions::kResolution);
   refuse_viip_phases(pattern, "retimed");
   return PaceSearch(model, pattern, options, progress).run();
 }

@@ -1,6 +1,7 @@
 #pragma once
 // The fastest uniform time scaling of a pattern that passes the check.
 
+#include "ayumi/base/bounds.hpp"
 #include "ayumi/base/progress.hpp"
 #include "ayumi/check/consistency.hpp"
 #include "ayumi/motion/pattern.hpp"
@@ -8,6 +9,9 @@
 namespace ayumi {
 
 struct RetimeOptions {
+  /// Chosen: the scale is rounded to three or four decimals, and half is no search any more.
+  static constexpr Bounds kResolution = {1e-5, 0.5};
+
   CheckOptions check = {};
   double dt = 0.001;                    ///< period of sampling [s]
   double resolution = 0.002;            ///< relative resolution of the scale
@@ -28,7 +32,7 @@ struct FastestPace {
 /// 1.05, or by a larger step if a joint is much too fast. From the fastest scale that passes, it
 /// also tries faster scales in steps of 0.5 % (down to 0.82 of this scale), because a pattern with
 /// flights may pass again there, and it continues from the fastest of these that passes. A scale
-/// that cannot be sampled does not pass.
+/// that cannot be sampled does not pass. Throws Error(usage) for a resolution out of bounds.
 FastestPace fastest_pace(const RobotModel& model, const Pattern& pattern,
                          const RetimeOptions& options, const Progress& progress = {});
 

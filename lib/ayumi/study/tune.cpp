@@ -160,10 +160,11 @@ void check(const TuneOptions& options, const CommandSeries& series, const Gains&
   if (options.simulate.controller.type != ControllerKind::dtad)
     refuse("controller '" + name_of(options.simulate.controller.type) +
            "' has no gains to tune; use dtad");
-  if (options.directions < 1 || options.directions > 360) refuse("directions: give 1 to 360");
-  if (!(options.level > 0)) refuse("level must be positive");
+  require_within("tune: the number of directions", options.directions, PushOptions::kDirections);
+  require_within("tune: the size of a push", options.level, TuneOptions::kLevel);
   if (!(options.factor > 1)) refuse("factor must exceed 1");
-  if (options.rounds < 1) refuse("rounds must be at least 1");
+  require_within("tune: the number of rounds", options.rounds, TuneOptions::kRounds);
+  require_within("tune: the number of threads", options.threads, kThreadBounds);
   if (options.gains.empty()) refuse("give at least one gain");
   std::vector<std::string> names;
   for (const auto& [name, value] : known) names.push_back(name);

@@ -12,6 +12,10 @@ namespace ayumi {
 /// The runs for each choice of gains: pushes in each phase and direction, and the pattern without a
 /// push.
 struct TuneOptions {
+  /// Bounds of the options. Chosen: pushes of more than 5 capture bounds fell the robot with any
+  /// gains, so they do not tell gains apart; 50 rounds take a day.
+  static constexpr Bounds kLevel = {0.01, 5, "capture bounds"}, kRounds = {1, 50};
+
   std::vector<PushPhase> phases;  ///< phases; if empty, default_push_phases()
   int directions = 4;             ///< number of evenly spread directions, the first along +x
   double level = 0.9;             ///< level of a push, in capture bounds

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/shortened_text.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/likely_mistakes.hpp"
 #include "ayumi/control/controller.hpp"
@@ -53,8 +54,8 @@ void refuse_unknown_profile(const Pattern& pattern, const RobotModel& robot) {
       std::find(names.begin(), names.end(), pattern.profile) != names.end())
     return;
   fail_unknown_name({pattern.file, "/profile"},
-                    "the robot '" + robot.name() + "' has no actuator profile '" + pattern.profile +
-                        "'; known: " + text::join(names, ", ") +
+                    "the robot '" + robot.name() + "' has no actuator profile '" +
+                        text::quotable(pattern.profile) + "'; known: " + text::join(names, ", ") +
                         text::suggestion(pattern.profile, names));
 }
 

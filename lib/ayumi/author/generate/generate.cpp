@@ -110,8 +110,7 @@ void check_parameters(const RobotModel& model, const WalkParameters& p) {
   require_range("walk", "side", p.side, -0.4 * leg, 0.4 * leg, " m");
   require_range("walk", "turn", p.turn * 180 / M_PI, -0.6 * 180 / M_PI, 0.6 * 180 / M_PI, " deg");
   require_range("walk", "zmp_inwards", p.zmp_inwards, 0, half_sole_width(model), " m");
-  if (p.cog_height != 0)
-    require_range("walk", "cog_height", p.cog_height, 0.3 * leg, 2 * leg, " m");
+  require_cog_height("walk", p.cog_height, leg);
 }
 
 ZmpKey::Place place_of(Side side) {

@@ -76,8 +76,7 @@ void check_parameters(const RobotModel& model, const JumpParameters& p) {
   require_range("jump", "stoop", p.stoop, 0.02 * leg, 0.5 * leg, " m");
   require_range("jump", "forward", p.forward, -0.3 * leg, 0.3 * leg, " m");
   require_range("jump", "times", p.times, 1, 100, "");
-  if (p.cog_height != 0)
-    require_range("jump", "cog_height", p.cog_height, 0.3 * leg, 2 * leg, " m");
+  require_cog_height("jump", p.cog_height, leg);
 }
 
 }  // namespace

@@ -38,6 +38,15 @@ void require_range(const char* pattern, const char* name, double value, double l
            " is out of range; it may be from " + bound(low) + " to " + bound(high) + unit);
 }
 
+void require_cog_height(const char* pattern, double height, double leg) {
+  if (height == 0) return;
+  try {
+    require_range(pattern, "cog_height", height, 0.3 * leg, 2 * leg, " m");
+  } catch (const Error& error) {
+    throw_with_more(error, ", or 0 for the usual height");
+  }
+}
+
 double leg_length(const RobotModel& model) {
   RobotData data(model);
   update_positions(model, model.rest_state(), data);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "ayumi/base/bounds.hpp"
 #include "ayumi/model/robot_model.hpp"
 #include "ayumi/motion/pattern.hpp"
 
@@ -13,6 +14,11 @@ namespace ayumi {
 /// If no sole is at rest in a motion with a base, these three thresholds decide whether a foot
 /// carries the robot, because recorded soles hover, slide and tilt.
 struct ContactThresholds {
+  /// Bounds of the thresholds. Chosen: a foot that is 0.2 m high, moves at 5 m/s or carries twice
+  /// the weight is in no doubt.
+  static constexpr Bounds kHeight = {0, 0.2, "m"}, kSpeed = {0, 5, "m/s"},
+                          kLoad = {0, 2, "times the weight"};
+
   /// Largest height of a sole above the lowest height that any sole has in the half second before
   /// and after [m]. Chosen: soles of retargeted dances hover 4 to 10 mm; swings lift them by more
   /// than 15 mm.

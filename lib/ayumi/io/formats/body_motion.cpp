@@ -34,7 +34,7 @@ class BodyMotionReader {
     if (motion_.values.size() == 0)
       source_.refuse(line_of(root_),
                      "there is no sequence of joint angles (JointDisplacement); add one");
-    if (!(motion_.rate > 0)) {
+    if (motion_.rate == 0) {
       motion_.rate = 100;  // Definition: Choreonoid assumes this rate if the file states none
       motion_.notes.push_back("frame rate: 100 per second, because the file states none");
     }
@@ -74,8 +74,8 @@ class BodyMotionReader {
     if (!frames || !frames->is_list())
       source_.refuse(line_of(component), "the sequence '" + content + "' has no frames");
     const double rate = number_of(component, "frame_rate", "frameRate", 0);
-    if (rate > 0) {
-      if (motion_.rate > 0 && rate != motion_.rate)
+    if (rate != 0) {
+      if (motion_.rate != 0 && rate != motion_.rate)
         source_.refuse(line_of(component), "the sequence '" + content + "' has " +
                                                text::brief(rate) +
                                                " frames per second, but another sequence has " +

@@ -157,6 +157,9 @@ bool may_be_cut(const std::string& text) {
 const MotionFormat& format_of(const std::string& bytes, MotionInput& source,
                               ImportedMotion& result) {
   const ImportOptions& options = source.options;
+  if (options.rate != 0) require_within("the rate of the rows", options.rate, ImportOptions::kRate);
+  if (options.smooth)
+    require_within("the largest change by smoothing", *options.smooth, ImportOptions::kSmooth);
   if (is_utf16(bytes)) source.refuse(1, "this is UTF-16 text; save it as UTF-8");
   const MotionFormat* format = nullptr;
   const bool text = bytes.find('\0') == std::string::npos;
@@ -457,6 +460,54 @@ Spacing spacing_of(const std::vector<double>& times, double time_step) {
   return {median, false};
 }
 
+/// If the step is at least this long, the rows are key postures [s]. Chosen: recordings have at
+/// least 20 rows per second, and players do not hold a posture for longer.
+constexpr double kKeyStep = 0.06;
+/// Step of the rows between key postures [s]. Chosen: half of the interval of hobby servos (20 ms);
+/// for action files it is the unit of their times, so that their keys are rows.
+constexpr double kKeyTick = 0.01, kActionTick = 0.008;
+/// Shortest usual step between rows [s], and the longest between key postures and between other
+/// rows. Chosen: no servo has a shorter tick, a robot that holds a posture for a minute has ended
+/// its motion, and a recording with a longer gap shows nothing of what the robot did in it. A slip,
+/// such as milliseconds that are taken for seconds or a clock that was set, exceeds them.
+constexpr double kShortestStep = 1 / ImportOptions::kRate.most, kLongestKeyStep = 60,
+                 kLongestGap = 10;
+
+[[noreturn]] void refuse_step(const std::string& what, double longest, const std::string& remedy,
+                              const std::string& file) {
+  fail(ErrorCode::bad_file, {file},
+       what + ", but the rows of a motion are " + text::brief(1000 * kShortestStep) + " ms to " +
+           text::brief(longest) + " s apart; " + remedy);
+}
+
+void require_rate(double rate, const std::string& file) {
+  const double step = 1 / rate;
+  if (!(step >= kShortestStep && step <= kLongestKeyStep))
+    refuse_step("the file states " + text::brief(rate) + " rows per second", kLongestKeyStep,
+                "correct the rate in the file", file);
+}
+
+/// `usual` is the step between most rows. Two rows may be nearer to each other.
+void require_steps(const std::vector<double>& times, double usual, double longest,
+                   const std::string& format, const std::string& file) {
+  // Tolerance of the shortest step, as a share of it. Derived: times of a few hours in seconds with
+  // seven decimals.
+  constexpr double kRounding = 0.01;
+  if (usual < kShortestStep * (1 - kRounding))
+    refuse_step("the rows are " + text::brief(1000 * usual) + " ms apart", longest,
+                "correct the times", file);
+  for (size_t k = 1; k < times.size(); ++k)
+    if (const double step = times[k] - times[k - 1]; !(step <= longest))
+      refuse_step(
+          "data row " + std::to_string(k + 1) + " comes " + text::brief(step) +
+              " s after the row before",
+          longest,
+          std::string("correct the times, or cut the file where rows are missing") +
+              (format == "csv" ? "; if the times are in milliseconds, name their column t[ms]"
+                               : ""),
+          file);
+}
+
 std::vector<double> times_of(const MotionFile& motion, const ImportOptions& options,
                              const std::string& file, std::vector<std::string>& notes) {
   std::vector<double> times = motion.times;
@@ -467,6 +518,7 @@ std::vector<double> times_of(const MotionFile& motion, const ImportOptions& opti
     if (motion.rate > 0 && options.rate > 0 && motion.file_rows == 0)
       notes.push_back("--rate is not used, because the file states its rate, " +
                       text::brief(motion.rate) + " rows per second");
+    if (motion.rate != 0) require_rate(motion.rate, file);
     const double rate = motion.rate > 0 ? motion.rate : options.rate;
     if (!(rate > 0))
       fail(ErrorCode::bad_file, {file},
@@ -492,13 +544,6 @@ std::vector<double> times_of(const MotionFile& motion, const ImportOptions& opti
   return times;
 }
 
-/// If the step is at least this long, the rows are key postures [s]. Chosen: recordings have at
-/// least 20 rows per second, and players do not hold a posture for longer.
-constexpr double kKeyStep = 0.06;
-/// Step of the rows between key postures [s]. Chosen: half of the interval of hobby servos (20 ms);
-/// for action files it is the unit of their times, so that their keys are rows.
-constexpr double kKeyTick = 0.01, kActionTick = 0.008;
-
 Rows even_rows(const MotionFile& motion, const Rows& rows, const ImportOptions& options,
                const std::string& file, const std::string& format, double& dt,
                std::vector<std::string>& notes) {
@@ -508,6 +553,7 @@ Rows even_rows(const MotionFile& motion, const Rows& rows, const ImportOptions& 
   const bool keys = (motion.keys && !spacing.even) || spacing.dt > kKeyStep;
   const bool unset = rows.array().isNaN().any();
   dt = keys ? tick : spacing.dt;
+  require_steps(times, spacing.dt, keys ? kLongestKeyStep : kLongestGap, format, file);
   const double last = times.back() / dt;
   if (last > static_cast<double>(kMostRows))
     fail(

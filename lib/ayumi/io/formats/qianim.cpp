@@ -26,9 +26,19 @@ struct Curve {
 
 void find_curves(const MotionInput& source, const TiXmlElement& element, double& rate,
                  std::vector<Curve>& curves) {
-  double fps = 0;
   for (const char* name : {"fps", "editor:fps"})
-    if (element.QueryDoubleAttribute(name, &fps) == TIXML_SUCCESS && fps > 0) rate = fps;
+    if (const char* const text = element.Attribute(name)) {
+      const auto line = static_cast<size_t>(element.Row());
+      const double fps = source.number(text, line, name);
+      if (!(fps > 0))
+        source.refuse(
+            line, name + (" is " + text::brief(fps)) + "; give the number of frames per second");
+      if (rate > 0 && fps != rate)
+        source.refuse(line, name + (" is " + text::brief(fps)) +
+                                ", but another part of the file has " + text::brief(rate) +
+                                "; give all parts the same rate");
+      rate = fps;
+    }
   if (std::string(element.Value()) != "ActuatorCurve") {
     for (const TiXmlElement* child = element.FirstChildElement(); child;
          child = child->NextSiblingElement())
@@ -49,7 +59,12 @@ void find_curves(const MotionInput& source, const TiXmlElement& element, double&
       if (!text) source.refuse(line, std::string("a key has no ") + name);
       return source.number(text, line, name);
     };
-    curve.keys[number("frame")] = number("value") * (degrees ? kRadiansPerDegree : 1);
+    const double frame = number("frame");
+    if (!curve.keys.empty() && !(frame > curve.keys.rbegin()->first))
+      source.refuse(line, "frame " + text::brief(frame) + " does not come after frame " +
+                              text::brief(curve.keys.rbegin()->first) +
+                              " of the key before; frames must increase");
+    curve.keys[frame] = number("value") * (degrees ? kRadiansPerDegree : 1);
   }
   for (const Curve& other : curves)
     if (other.joint == curve.joint)
@@ -80,11 +95,12 @@ MotionFile read_qianim(const MotionInput& source) {
     source.refuse(static_cast<size_t>(second->Row()),
                   "a second <" + second->ValueStr() +
                       "> begins here, but a file has one; cut the file before this line");
-  double rate = kUsualFrames;
+  double rate = 0;  // 0: none was stated yet
   std::vector<Curve> curves;
   find_curves(source, *document.RootElement(), rate, curves);
   if (curves.empty())
     source.refuse(0, "the file has no key, so there is no motion to read; write the file again");
+  if (rate == 0) rate = kUsualFrames;
   std::map<double, Eigen::Index> frames;
   for (const Curve& curve : curves)
     for (const auto& [frame, value] : curve.keys) frames[frame] = 0;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/shortened_text.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/math/elementary.hpp"
 
@@ -67,7 +68,7 @@ class Parser {
 
  private:
   [[noreturn]] void stop(const std::string& reason) const {
-    fail(ErrorCode::bad_pattern, where_, "expression \"" + std::string(text_) + "\": " + reason);
+    fail(ErrorCode::bad_pattern, where_, "expression \"" + text::quotable(text_) + "\": " + reason);
   }
 
   bool at_end() {
@@ -168,14 +169,15 @@ class Parser {
   static std::string unknown_function(const std::string& name) {
     std::vector<std::string> names = {"pi"};
     for (const auto& entry : functions()) names.push_back(entry.first);
-    return "unknown name '" + name + "'; write a parameter as ${" + name +
-           "}; the known names are " + text::join(names, ", ") + text::suggestion(name, names);
+    return "unknown name '" + text::quotable(name) + "'; write a parameter as ${" +
+           text::quotable(name) + "}; the known names are " + text::join(names, ", ") +
+           text::suggestion(name, names);
   }
 
   std::string unknown(const std::string& name) const {
     std::vector<std::string> names;
     for (const auto& entry : parameters_) names.push_back(entry.first);
-    return "unknown parameter '" + name + "'" + text::suggestion(name, names) +
+    return "unknown parameter '" + text::quotable(name) + "'" + text::suggestion(name, names) +
            (names.empty() ? " (the pattern declares no \"parameters\")"
                           : " (declared: " + text::join(names, ", ") + ")");
   }

@@ -9,6 +9,8 @@
 #include "ayumi/io/pattern/pattern_scope.hpp"
 #include "ayumi/math/random.hpp"
 #include "ayumi/motion/controller_spec.hpp"
+#include "ayumi/sim/simulate.hpp"
+#include "ayumi/study/push.hpp"
 
 namespace ayumi {
 
@@ -102,8 +104,9 @@ SettingValue read_value(const JsonNode& node, const std::string& name) {
   }
   if (contains(kSwitches, name)) return node.boolean() ? 1.0 : 0.0;
   if (contains(kWholeNumbers, name)) {
-    const double most = name == "substeps" ? 100 : kLargestWhole;
-    return whole(node, name == "substeps" ? 1 : 0, node.number_within(0, most));
+    const Bounds bounds =
+        name == "substeps" ? SimulateOptions::kSubsteps : Bounds{0, kLargestWhole};
+    return whole(node, bounds.least, node.number_within(0, bounds.most));
   }
   return node.number_within(-kLargestNumber, kLargestNumber);
 }
@@ -406,19 +409,19 @@ SweepStudy::SweepStudy(const std::string& text, const std::filesystem::path& pat
     if (const auto node = given->find("times"))
       for (const JsonNode& item : node->items())
         t.times.push_back(item.number_within(0, kLongestPattern));
-    const auto count = [&](const char* key, int least, int most, int& into) {
+    const auto count = [&](const char* key, const Bounds& bounds, int& into) {
       if (const auto node = given->find(key))
-        into = static_cast<int>(whole(*node, least, node->number_within(least, most)));
+        into = static_cast<int>(
+            whole(*node, bounds.least, node->number_within(bounds.least, bounds.most)));
     };
-    const auto number = [&](const char* key, double least, double most, double& into) {
-      if (const auto node = given->find(key)) into = node->number_within(least, most);
+    const auto number = [&](const char* key, const Bounds& bounds, double& into) {
+      if (const auto node = given->find(key)) into = node->number_within(bounds.least, bounds.most);
     };
-    // These ranges are the same as those of `ayumi push`.
-    count("directions", 1, 360, t.directions);
-    count("replicas", 0, 100, t.replicas);
-    number("step", 0.005, 1, t.step);
-    number("cap", 0.1, 20, t.cap);
-    number("duration", 0.001, 1, t.duration);
+    count("directions", PushOptions::kDirections, t.directions);
+    count("replicas", PushOptions::kReplicas, t.replicas);
+    number("step", PushOptions::kStep, t.step);
+    number("cap", PushOptions::kCap, t.cap);
+    number("duration", PushOptions::kDuration, t.duration);
   }
   document_ = std::move(document);
 }

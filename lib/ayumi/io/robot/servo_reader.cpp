@@ -27,38 +27,38 @@ constexpr double kMostRate = 1e4;       // largest rate that is accepted [rad/s]
 constexpr double kMostLoadFriction = 1;
 
 /// The values that a constant of a servo may have, with its unit and the advice for other values.
-struct Bounds {
+struct ValueRange {
   double least, most;
   const char* unit;
   const char* advice = "";
 };
-constexpr Bounds kStiffness = {0, kMostStiffness, "N m/rad"};
-constexpr Bounds kDamping = {0, kMostDamping, "N m s/rad"};
-constexpr Bounds kInertia = {0, kMostInertia, "kg m^2"};
-constexpr Bounds kTorque = {0, kMostTorque, "N m"};
-constexpr Bounds kDelay = {0, kMostServoDelay, "s", "; state it in seconds: 3.7 ms is 0.0037"};
-constexpr Bounds kRate = {0, kMostRate, "rad/s"};
-constexpr Bounds kExponent = {0.1, 10, ""};
-constexpr Bounds kPlay = {0, kMostServoPlay, "rad", "; for degrees, use the key that ends in _deg"};
-constexpr Bounds kPlayDeg = {0, kMostServoPlay / kRadiansPerDegree, "deg"};
-constexpr Bounds kOffset = {-kMostOffset, kMostOffset, "rad",
+constexpr ValueRange kStiffness = {0, kMostStiffness, "N m/rad"};
+constexpr ValueRange kDamping = {0, kMostDamping, "N m s/rad"};
+constexpr ValueRange kInertia = {0, kMostInertia, "kg m^2"};
+constexpr ValueRange kTorque = {0, kMostTorque, "N m"};
+constexpr ValueRange kDelay = {0, kMostServoDelay, "s", "; state it in seconds: 3.7 ms is 0.0037"};
+constexpr ValueRange kRate = {0, kMostRate, "rad/s"};
+constexpr ValueRange kExponent = {0.1, 10, ""};
+constexpr ValueRange kPlay = {0, kMostServoPlay, "rad", "; for degrees, use the key that ends in _deg"};
+constexpr ValueRange kPlayDeg = {0, kMostServoPlay / kRadiansPerDegree, "deg"};
+constexpr ValueRange kOffset = {-kMostOffset, kMostOffset, "rad",
                             "; for degrees, use the key that ends in _deg. For a larger offset, "
                             "mount the horn in another position"};
-constexpr Bounds kOffsetDeg = {-kMostOffset / kRadiansPerDegree, kMostOffset / kRadiansPerDegree,
+constexpr ValueRange kOffsetDeg = {-kMostOffset / kRadiansPerDegree, kMostOffset / kRadiansPerDegree,
                                "deg", "; for a larger offset, mount the horn in another position"};
-constexpr Bounds kPositionGain = {0, 1e5, "1/s"};
-constexpr Bounds kTorqueConstant = {0, kMostTorque, "N m/A"};
-constexpr Bounds kResistance = {0, 1e6, "ohm"};
-constexpr Bounds kVoltage = {0, 1e4, "V"};
-constexpr Bounds kVoltageGain = {0, kMostStiffness, "V/rad"};
-constexpr Bounds kShare = {0, kMostLoadFriction, ""};
-constexpr Bounds kPerTorque = {0, kMostLoadFriction, "1/(N m)"};
+constexpr ValueRange kPositionGain = {0, 1e5, "1/s"};
+constexpr ValueRange kTorqueConstant = {0, kMostTorque, "N m/A"};
+constexpr ValueRange kResistance = {0, 1e6, "ohm"};
+constexpr ValueRange kVoltage = {0, 1e4, "V"};
+constexpr ValueRange kVoltageGain = {0, kMostStiffness, "V/rad"};
+constexpr ValueRange kShare = {0, kMostLoadFriction, ""};
+constexpr ValueRange kPerTorque = {0, kMostLoadFriction, "1/(N m)"};
 
 std::string with_unit(double value, const char* unit) {
   return text::brief(value) + (*unit ? " " : "") + unit;
 }
 
-double within(const JsonNode& node, const Bounds& bounds) {
+double within(const JsonNode& node, const ValueRange& bounds) {
   const double value = node.number();
   const bool small = value < bounds.least;
   if (small || value > bounds.most)
@@ -68,7 +68,7 @@ double within(const JsonNode& node, const Bounds& bounds) {
   return value;
 }
 
-double positive(const JsonNode& node, const Bounds& bounds) {
+double positive(const JsonNode& node, const ValueRange& bounds) {
   const double value = within(node, bounds);
   if (value == 0) node.complain("this value must be above 0, but it is 0");
   return value;
@@ -78,7 +78,7 @@ double positive(const JsonNode& node, const Bounds& bounds) {
 struct Field {
   const char* key;
   double ServoDescription::*value;
-  Bounds bounds;
+  ValueRange bounds;
   double unit = 1;
 };
 
@@ -109,7 +109,7 @@ const std::vector<Field>& fields() {
 struct LoadField {
   const char *key, *bam;
   double LoadFriction::*value;
-  Bounds bounds = kShare;
+  ValueRange bounds = kShare;
 };
 constexpr std::array<LoadField, 6> kLoadFields = {{
     {"motor", "load_friction_motor", &LoadFriction::motor},

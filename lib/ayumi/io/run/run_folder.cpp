@@ -7,6 +7,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/regular_file.hpp"
+#include "ayumi/base/shortened_text.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
 #include "ayumi/io/json/json_reader.hpp"
@@ -107,6 +108,24 @@ std::string sealed(const std::string& object) {
 
 constexpr const char* kOtherHash = "its SHA-256 differs from the value";
 
+[[noreturn]] void complain_of_unlisted(const fs::path& file) {
+  fail(ErrorCode::bad_file, {file.string()},
+       "the run does not list this file in \"files\" of its run.json, so the file is of another "
+       "run or was changed; make the run again");
+}
+
+// Whether a name is that of a file in the folder itself.
+bool is_file_name(const std::string& name) {
+  return !name.empty() && name != "." && name != ".." && fs::path(name).filename() == name;
+}
+
+bool is_log_name(const std::string& name) {
+  return name.starts_with("log_") && name.ends_with(".bin");
+}
+bool is_table_name(const std::string& name) {
+  return name == kReferenceFile || name == kPushedFile;
+}
+
 // A file of a run. The bytes that are hashed are those that are read.
 class HashedFile {
  public:
@@ -142,14 +161,13 @@ std::string other_size(const HashedFile& file, const JsonNode& root, const std::
 }
 
 // What `use` makes of a file of the run, after its bytes were compared with what run.json records.
-// Files that run.json does not list are not compared.
 template <typename Use>
 auto use_unchanged(const fs::path& folder, const JsonNode& root, const std::string& name,
                    size_t max_bytes, const Use& use) {
   const fs::path path = folder / name;
-  HashedFile file(path, max_bytes);
   const auto recorded = root.at("files").find(name);
-  if (!recorded) return use(file);
+  if (!recorded) complain_of_unlisted(path);
+  HashedFile file(path, max_bytes);
   if (const std::string what = other_size(file, root, name); !what.empty())
     complain_of_change(path, what);
   std::optional<decltype(use(file))> used;
@@ -188,15 +206,51 @@ struct RunFile {
     // Runs of versions before 0.2.0 are not sealed.
     if (root.has(kSealKey) && !is_sealed()) complain_of_change(path, kOtherHash);
   }
+  // Throws unless the text has its own hash and the sizes of all files.
   void require_seal() const {
-    if (!is_sealed())
-      root().complain(std::string("the member '") + kSealKey +
+    const auto missing = [&](const std::string& member) {
+      root().complain("the member '" + member +
                       "' is missing: the file has changed, or an older version wrote it; make the "
                       "run again");
+    };
+    if (!is_sealed()) missing(kSealKey);
+    const auto sizes = root().find(kSizesKey);
+    if (!sizes) missing(kSizesKey);
+    for (const auto& [name, hash] : root().at("files").members())
+      if (!sizes->has(name)) missing(std::string(kSizesKey) + "/" + name);
   }
   bool is_sealed() const {
     const size_t at = text.rfind(std::string(",\n  \"") + kSealKey + "\"");
     return at != std::string::npos && text.substr(at) == seal_before(text.substr(0, at));
+  }
+  // Throws unless run.json lists, with hash and size, every file that a reader takes for a part of
+  // the run, and names no file outside of the folder. Otherwise a file would be read that no hash
+  // binds to this run.
+  void require_listed(const fs::path& folder) const {
+    const JsonNode files = root().at("files");
+    for (const auto& [name, hash] : files.members())
+      if (!is_file_name(name))
+        hash.complain("'" + text::quotable(name) +
+                      "' is not the name of a file in this folder; make the run again");
+    for (const auto& [name, log] : root().at("logs").members())
+      if (const JsonNode file = log.at("file"); file.string() != log_file_name(name))
+        file.complain("'" + text::quotable(file.string()) + "' is not the file of this log, " +
+                      log_file_name(name) + "; make the run again");
+      else if (!files.has(log_file_name(name)))
+        complain_of_unlisted(folder / log_file_name(name));
+    if (const auto sizes = root().find(kSizesKey))
+      for (const auto& [name, size] : sizes->members())
+        if (!files.has(name))
+          size.complain("\"files\" has no file of this name; make the run again");
+    // A run without tables may contain those that a person has exported from it.
+    const bool light = root().has(kLightKey);
+    std::error_code error;
+    std::set<std::string> unlisted;  // so that the message does not depend on the order in a folder
+    for (const auto& entry : fs::directory_iterator(folder, error))
+      if (const std::string name = entry.path().filename().string();
+          !files.has(name) && (is_log_name(name) || (!light && is_table_name(name))))
+        unlisted.insert(name);
+    if (!unlisted.empty()) complain_of_unlisted(folder / *unlisted.begin());
   }
   JsonNode root() const { return root_of(document, path, ErrorCode::bad_file); }
 
@@ -217,7 +271,7 @@ struct RunFile {
 };
 
 SimulationLog log_of(const fs::path& folder, const JsonNode& root, const std::string& name) {
-  const std::string log = root.at("logs").at(name).at("file").string();
+  const std::string log = log_file_name(name);
   return use_unchanged(folder, root, log, kLargestRunFile, [&](HashedFile& file) {
     return read_log([&](size_t count) { return file.next(count); }, file.size(),
                     (folder / log).string());
@@ -270,7 +324,7 @@ std::vector<std::string> run_file_names(const fs::path& folder) {
   const RunFile file(folder);
   std::vector<std::string> names = {kRunFile};
   for (const auto& [name, hash] : file.root().at("files").members())
-    if (fs::path(name).filename() == name && name != "." && name != "..") names.push_back(name);
+    if (is_file_name(name)) names.push_back(name);
   return names;
 }
 
@@ -288,6 +342,7 @@ std::optional<std::string> verify_run(const fs::path& folder, const std::string&
   const RunFile file(folder);
   const JsonNode root = file.root();
   file.require_seal();
+  file.require_listed(folder);
   std::optional<std::string> kept;
   for (const auto& [name, hash] : root.at("files").members()) {
     if (name == keep)
@@ -302,6 +357,7 @@ RunFolder read_run(const fs::path& folder, ComparedFiles compared) {
   const RunFile file(folder);
   const JsonNode root = file.root();
   if (compared == ComparedFiles::all) file.require_seal();
+  file.require_listed(folder);
   RunFolder run;
   const JsonNode provenance = root.at("provenance");
   for_each_provenance(run.provenance, [&](const char* key, std::string& value) {
@@ -316,7 +372,7 @@ RunFolder read_run(const fs::path& folder, ComparedFiles compared) {
   std::set<std::string> read;
   for (const auto& [name, node] : root.at("logs").members()) {
     run.logs.emplace(name, log_of(folder, root, name));
-    read.insert(node.at("file").string());
+    read.insert(log_file_name(name));
   }
   for (const auto& [name, hash] : root.at("files").members()) {
     if (name == kReferenceFile || name == kPushedFile) {
@@ -347,6 +403,7 @@ std::string read_run_section(const fs::path& path, const std::string& key) {
 SimulationLog read_run_log(const fs::path& path, const std::string& name) {
   if (fs::is_regular_file(path)) return read_log(path);
   const RunFile file(path);
+  file.require_listed(path);
   const JsonNode root = file.root();
   std::vector<std::string> names;
   for (const auto& entry : root.at("logs").members()) names.push_back(entry.first);

@@ -22,6 +22,7 @@
 #include "ayumi/io/run/sample_compression.hpp"
 #include "ayumi/io/run/sha256_stream.hpp"
 #include "ayumi/model/validate.hpp"
+#include "ayumi/sim/log_events.hpp"
 
 namespace ayumi {
 
@@ -203,7 +204,14 @@ void read_header(const JsonNode& header, SimulationLog& log) {
   log.world = read_world(header.at("world"), scope);
   for (const JsonNode& node : header.at("scenario").items())
     log.scenario.push_back(read_disturbance(node, scope));
-  for (const JsonNode& node : header.at("events").items())
+  const JsonNode events = header.at("events");
+  // Chosen: the program adds a few events of its own to those of the simulator, such as the case
+  // of a study.
+  constexpr size_t kMostOthers = 100;
+  if (events.size() > kMostLogEvents + kMostOthers)
+    events.complain("the log has " + std::to_string(events.size()) + " events, but at most " +
+                    std::to_string(kMostLogEvents + kMostOthers) + " are read; simulate again");
+  for (const JsonNode& node : events.items())
     log.events.push_back(
         {node.at("t").number(), node.at("kind").string(), node.at("text").string()});
   log.joints = header.at("joints").strings();

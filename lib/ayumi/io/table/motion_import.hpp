@@ -7,12 +7,18 @@
 #include <vector>
 
 #include "ayumi/author/import/contact_reconstruction.hpp"
+#include "ayumi/base/bounds.hpp"
 #include "ayumi/model/encoder_angles.hpp"
 #include "ayumi/motion/table_caution.hpp"
 
 namespace ayumi {
 
 struct ImportOptions {
+  /// Bounds of rate, where it is not 0, and of smooth. Chosen: a row in more than a second shows no
+  /// motion, one in less than 0.01 ms is no tick of a servo, and a change of more than 5 degrees
+  /// makes another motion.
+  static constexpr Bounds kRate = {1, 1e5, "1/s"}, kSmooth = {0, 5, "deg"};
+
   std::string format{};   ///< name of motion_formats(); "" if the content decides
   bool degrees = false;   ///< unit of angles if the format does not define it
   double rate = 0;        ///< rate of rows without times [1/s]
@@ -62,7 +68,7 @@ std::optional<ImportedKeys> read_key_poses(const std::string& bytes, const std::
 /// The rows of a file as they are, evenly spaced, with the columns of the robot's joints. Joints
 /// are mapped by their names or the robot's aliases, or by their order if the options say so.
 /// Values that are not set, and rows between key postures, are interpolated. Throws Error(bad_file)
-/// that names the format, the place and the remedy.
+/// that names the format, the place and the remedy, and Error(usage) for options out of bounds.
 ImportedMotion read_motion_rows(const std::string& bytes, const std::string& file,
                                 const RobotModel& model, const ImportOptions& options = {});
 

@@ -493,6 +493,18 @@ bool is_bare_table(const std::string& bytes) {
 
 namespace {
 
+void require_rate(const RecordingOptions& options) {
+  if (options.rate != 0) require_within("the rate of the rows", options.rate, kRecordingRate);
+}
+
+void require_rate_of_rows(double dt, const std::string& file) {
+  if (!(1 / dt >= kRecordingRate.least && 1 / dt <= kRecordingRate.most))
+    complain(file, "the file has " + text::brief(1 / dt) +
+                       " rows per second, but a recording has " +
+                       text::brief(kRecordingRate.least) + " to " +
+                       text::brief(kRecordingRate.most) + "; correct the times");
+}
+
 AngleTable readings_of(const std::string& bytes, const std::string& file, const RobotModel& model,
                        const RecordingOptions& options) {
   if (trimmed(bytes).empty()) complain(file, "the file is empty");
@@ -540,7 +552,9 @@ void take_to_joints(const RobotModel& model, MeasuredAt measured_at, AngleTable&
 
 AngleTable read_angles(const std::string& bytes, const std::string& file, const RobotModel& model,
                        const RecordingOptions& options) {
+  require_rate(options);
   AngleTable table = readings_of(bytes, file, model, options);
+  require_rate_of_rows(table.dt, file);
   take_to_joints(model, options.measured_at, table);
   return table;
 }
@@ -566,10 +580,13 @@ bool holds_sensors(const std::string& bytes, const std::string& file, const Robo
 
 SensorTable read_sensors_table(const std::string& bytes, const std::string& file,
                                const RobotModel& model, const RecordingOptions& options) {
+  require_rate(options);
   if (trimmed(bytes).empty()) complain(file, "the file is empty");
   require_one_line_end(bytes, file);
-  return is_bare_table(bytes) ? bare_sensors(bytes, file, model, options)
-                              : named_sensors(bytes, file, options);
+  SensorTable table = is_bare_table(bytes) ? bare_sensors(bytes, file, model, options)
+                                           : named_sensors(bytes, file, options);
+  require_rate_of_rows(table.dt, file);
+  return table;
 }
 
 }  // namespace ayumi

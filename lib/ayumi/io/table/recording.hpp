@@ -22,8 +22,8 @@ struct RecordingOptions {
 /// <joint>[counts]; other columns are ignored. Throws Error(bad_file) "file:line: ..." or "file:
 /// column '...': ..." for a text that is not such a table, line ends of two kinds, values that are
 /// not numbers, gaps in time, jumps that no motor makes (missing samples, counters that wrap),
-/// angles in another unit, a device that moves but has no joint, and a table in which all values
-/// are zero.
+/// angles in another unit, a device that moves but has no joint, a table in which all values
+/// are zero, or a rate beyond kRecordingRate; Error(usage) for such a rate in the options.
 AngleTable read_angles(const std::string& bytes, const std::string& file, const RobotModel& model,
                        const RecordingOptions& options = {});
 

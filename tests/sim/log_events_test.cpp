@@ -1,0 +1,44 @@
+#include "ayumi/sim/log_events.hpp"
+
+#include <gtest/gtest.h>
+
+namespace ayumi {
+namespace {
+
+std::vector<SimulationEvent> events_of(const std::vector<std::string>& kinds) {
+  std::vector<SimulationEvent> events;
+  for (const std::string& kind : kinds)
+    events.push_back({static_cast<double>(events.size()), kind, ""});
+  return events;
+}
+
+std::vector<std::string> kinds_of(const std::vector<SimulationEvent>& events) {
+  std::vector<std::string> kinds;
+  for (const SimulationEvent& event : events) kinds.push_back(event.kind);
+  return kinds;
+}
+
+using Kinds = std::vector<std::string>;
+
+TEST(LogEvents, TheLastTouchdownsAreLeftOutFirst) {
+  std::vector<SimulationEvent> events =
+      events_of({"push", "touchdown", "touchdown", "touchdown", "saturation", "fell"});
+  limit_events(events, 6);
+  EXPECT_EQ(events.size(), 6u);
+  limit_events(events, 5);
+  EXPECT_EQ(kinds_of(events), (Kinds{"push", "touchdown", "saturation", "fell", "log"}));
+  EXPECT_EQ(events[1].t, 1);
+  EXPECT_EQ(events.back().text, "2 events left out");
+  EXPECT_EQ(events.back().t, 5);
+}
+
+TEST(LogEvents, OthersFollowIfThereAreStillTooMany) {
+  std::vector<SimulationEvent> events =
+      events_of({"push", "touchdown", "disturbance", "touchdown", "disturbance"});
+  limit_events(events, 3);
+  EXPECT_EQ(kinds_of(events), (Kinds{"push", "disturbance", "log"}));
+  EXPECT_EQ(events.back().text, "3 events left out");
+}
+
+}  // namespace
+}  // namespace ayumi
