@@ -622,8 +622,9 @@ FirstSidecar first_sidecar(const std::string& robot, const std::filesystem::path
   const std::vector<std::string> play = hold_play_of_gears(stated);
   constexpr size_t kMostNamed = 3;  // number of missing meshes that the to-do list names
   for (const std::string& gap : gaps_of_the_files(stated, kMostNamed)) read.push_back(gap);
+  // The gains of the servos are guessed from the inertias, so placeholders are replaced first.
+  const std::vector<std::string> boxes = take_inertias_of_shapes(stated);
   RobotGuess guess = guess_robot(std::move(stated));
-  const std::vector<std::string> boxes = take_inertias_of_shapes(guess.robot);
   const RobotModel model(guess.robot);
   require_weight(model, robot);
   FirstSidecar result;
