@@ -63,6 +63,17 @@ size_t utf8_character(std::string_view text, char32_t& code) {
   return length;
 }
 
+std::string with_line_feeds(std::string_view text) {
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+  std::string result;
+  result.reserve(text.size());
+  for (size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '\r' && i + 1 < text.size() && text[i + 1] == '\n') continue;
+    result += text[i] == '\r' ? '\n' : text[i];
+  }
+  return result;
+}
+
 size_t not_utf8_at(std::string_view text) {
   char32_t code = 0;
   for (size_t at = 0; at < text.size();) {
