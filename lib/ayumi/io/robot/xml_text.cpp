@@ -104,7 +104,8 @@ std::string xml_attribute(const TiXmlElement* element, const char* name, const s
 std::string shown_value(const std::string& value) {
   constexpr size_t kMost = 80;  // bytes. Chosen: nine numbers with six digits
   std::string shown;
-  for (const char c : value) shown += std::isspace(static_cast<unsigned char>(c)) ? ' ' : c;
+  for (const char c : value.substr(0, kMost + 1))
+    shown += std::isspace(static_cast<unsigned char>(c)) ? ' ' : c;
   return text::shortened(shown, [](const std::string& each) { return each.size() <= kMost; });
 }
 
