@@ -13,6 +13,7 @@
 #include "ayumi/control/gain_design.hpp"
 #include "ayumi/limits/amount_text.hpp"
 #include "ayumi/limits/limit.hpp"
+#include "ayumi/math/random.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "ayumi/repair/infeasibility_report.hpp"
 #include "ayumi/task/task.hpp"
@@ -27,13 +28,16 @@ namespace {
 // within ten seconds; on 14 robots and 69 variants of them, the longest search took 8 s.
 constexpr int kMostSampled = 90, kMostChecked = 8;
 // Total length of all tried motions at which the search from the nearest trial ends [s]. A motion
-// that is checked or simulated counts several times. Chosen: the quick check of look_at() takes 13
-// ms for a second of motion, so that a search ends within ten seconds.
-constexpr double kMostWork = 600;
+// that is checked or simulated counts several times. Chosen: the quick check of look_at() takes 2
+// to 4 ms for a second of motion, so that a search ends within ten seconds.
+constexpr double kMostWork = 1800;
 constexpr double kWorkOfCheck = 4, kWorkOfRun = 5;
 // Shares of the range of a dial by which its value is moved: the first and the last one. Chosen:
 // the last one is the smallest move for which the errors of a walk can be distinguished.
-constexpr double kFirstMove = 0.25, kLastMove = 0.03;
+constexpr double kFirstMove = 0.25, kLastMove = 0.015;
+// Largest number of sets of directions in which all values are moved together. Chosen: one set of
+// six values has at most twelve trials, so that kMostWork is reached first.
+constexpr int kMostSets = 400;
 // Largest number of motions that are simulated. Chosen: a walk of 12 s takes 0.3 to 1 s.
 constexpr int kMostSimulated = 5;
 // Sample period of the first check [s]. Chosen: only postures are judged, 45 of them in a swing of
@@ -109,9 +113,13 @@ std::vector<std::vector<size_t>> nearest_first(const std::vector<Dial>& dials) {
   return all;
 }
 
-}  // namespace
+// The end of a motion in a simulation with the default controller.
+struct End {
+  std::string falls;  // such as "with dtad, the robot fell at 3.2 s ..."; "" if the robot stands
+  double share = 1;   // share of the motion before the fall; 0 if the gains are unstable
+};
 
-std::string end_in_simulation(const RobotModel& model, const Pattern& pattern) {
+End end_in_simulation(const RobotModel& model, const Pattern& pattern) {
   Task task = make_task(pattern, model, "", {});
   const Judgement judged = judge(task);
   // This is the profile that write_new_pattern() chooses.
@@ -121,23 +129,27 @@ std::string end_in_simulation(const RobotModel& model, const Pattern& pattern) {
   const CommandSample& first = task.series.samples.front();
   const std::string unstable = instability(model, model.limits(task.profile), options.controller,
                                            first.cog.z() - first.zmp.z(), task.series.dt);
-  if (!unstable.empty()) return unstable;
+  if (!unstable.empty()) return {unstable, 0};
   const SimulationLog log = simulate(task, options);
-  return log.result.outcome == Outcome::fell ? outcome_text(log) : "";
+  if (log.result.outcome != Outcome::fell) return {};
+  return {outcome_text(log), log.result.fell_at / pattern.duration()};
 }
-
-namespace {
 
 class MotionSearch {
  public:
   MotionSearch(const RobotModel& model, const std::vector<Dial>& dials,
                const std::function<Pattern(const std::vector<double>&)>& make,
-               const Progress& progress, bool simulated)
-      : model_(model), dials_(dials), make_(make), progress_(progress), simulated_(simulated) {}
+               const Progress& progress, bool simulated, const UsedValues& used)
+      : model_(model),
+        dials_(dials),
+        make_(make),
+        progress_(progress),
+        simulated_(simulated),
+        used_(used) {}
 
   SearchResult run() {
     try_lists();
-    if (!result_.found && accepted_.empty() && !result_.limit.empty()) go_on_from_nearest();
+    if (!result_.found && !unstable_ && !result_.limit.empty()) go_on_from_nearest();
     if (!result_.found && !accepted_.empty()) {
       result_.found = true;
       result_.values = accepted_;
@@ -149,7 +161,7 @@ class MotionSearch {
   using Values = std::vector<double>;
 
   // The errors of a motion, and its fall in a simulation. If `first` is "", there is no error and
-  // no fall.
+  // no fall. The severity of a fall is less than that of any error, and less if it comes later.
   Wrong wrong_with(const Pattern& pattern, const Values& values) {
     ++checked_;
     work_ += kWorkOfCheck * pattern.duration();
@@ -162,12 +174,13 @@ class MotionSearch {
     if (!motion.first.empty() || !simulated_) return motion;
     ++runs_;
     work_ += kWorkOfRun * pattern.duration();
-    const std::string falls = end_in_simulation(model_, pattern);
-    if (!falls.empty() && result_.falls.empty()) {
-      result_.falls = falls;
+    const End end = end_in_simulation(model_, pattern);
+    if (!end.falls.empty() && result_.falls.empty()) {
+      result_.falls = end.falls;
       accepted_ = values;
     }
-    return {falls, "", 0};
+    unstable_ |= end.share == 0;
+    return {end.falls, "", -end.share};
   }
 
   void note_trial() {
@@ -241,8 +254,8 @@ class MotionSearch {
     try {
       Pattern pattern = make_(values);
       pattern.file.clear();
+      work_ += pattern.duration();  // also for a motion that is out of reach when it is sampled
       double beyond = look_at(model_, pattern).beyond;
-      work_ += pattern.duration();
       note_trial();
       if (beyond == 0) {
         const Wrong motion = wrong_with(pattern, values);
@@ -250,7 +263,6 @@ class MotionSearch {
           take(values);
           return true;
         }
-        if (!accepted_.empty()) return true;
         beyond = motion.severity;
       }
       if (beyond >= least_beyond_) return false;
@@ -263,18 +275,21 @@ class MotionSearch {
     }
   }
 
-  bool succeeded() const { return result_.found || !accepted_.empty(); }
-  bool ended() const { return succeeded() || work_ > kMostWork; }
+  bool ended() const {
+    return result_.found || unstable_ || runs_ >= kMostSimulated || work_ > kMostWork;
+  }
 
-  // Moves one value after the other, and then two at once, as long as this comes nearer to passing;
-  // then it does the same with moves of half the size.
+  // Moves one value after the other as long as this comes nearer to passing, and does the same with
+  // moves of half the size. Then it moves all values together.
   void go_on_from_nearest() {
     if (start_.empty()) return;
     goes_on_from_ = work_;
+    start_ = used_(start_);  // a move of a value that has no effect comes nearer to nothing
     for (double share = kFirstMove; share >= kLastMove && !ended(); share /= 2)
-      while (move_one(share) || move_two(share)) {
+      while (move_one(share)) {
       }
-    if (succeeded()) return;
+    move_together();
+    if (result_.found || !accepted_.empty()) return;
     try {
       Pattern pattern = make_(start_);
       pattern.file.clear();
@@ -292,15 +307,35 @@ class MotionSearch {
     return nearer && !ended();
   }
 
-  bool move_two(double share) {
+  // Moves all values together, in sets of orthogonal directions that differ from set to set. This
+  // finds values that pass only in a narrow range that is oblique to the dials, where no move of
+  // one or two values comes nearer. Source: mesh adaptive direct search with Householder
+  // directions, Abramson, Audet, Dennis and Le Digabel, SIAM J. Optim. 20 (2009) 948-966.
+  void move_together() {
+    std::vector<size_t> movable;
     for (size_t i = 0; i < dials_.size(); ++i)
-      for (size_t j = 0; j < i; ++j)
-        for (const double one : {-share, share})
-          for (const double other : {-share, share}) {
-            if (ended()) return false;
-            if (looks_nearer(moved(moved(start_, i, one), j, other))) return !ended();
-          }
-    return false;
+      if (dials_[i].most > dials_[i].least) movable.push_back(i);
+    if (movable.size() < 2) return;
+    Random random(1);
+    double share = kFirstMove;
+    for (int set = 0; set < kMostSets && !ended(); ++set) {
+      Eigen::VectorXd normal(static_cast<Eigen::Index>(movable.size()));
+      random.normals(normal.data(), static_cast<int>(normal.size()));
+      normal.normalize();
+      bool nearer = false;
+      for (Eigen::Index k = 0; k < normal.size() && !nearer && !ended(); ++k)
+        for (const double way : {-share, share}) {
+          const Eigen::VectorXd direction =
+              Eigen::VectorXd::Unit(normal.size(), k) - 2 * normal[k] * normal;
+          Values values = start_;
+          for (size_t i = 0; i < movable.size(); ++i)
+            values = moved(values, movable[i], way * direction[static_cast<Eigen::Index>(i)]);
+          nearer = looks_nearer(values);
+          if (nearer || ended()) break;
+        }
+      share = nearer ? std::min(kFirstMove, 2 * share) : share / 2;
+      if (share < kLastMove) share = kFirstMove;
+    }
   }
 
   Values moved(Values values, size_t i, double share) const {
@@ -316,8 +351,10 @@ class MotionSearch {
   const std::function<Pattern(const Values&)>& make_;
   const Progress& progress_;
   bool simulated_;
+  const UsedValues& used_;
   SearchResult result_;
   int checked_ = 0, runs_ = 0;
+  bool unstable_ = false;           // whether the gains let the robot fall in any motion
   double nearest_ = HUGE_VAL;       // severity of the worst error of the nearest motion
   Values accepted_;                 // values that the check accepts, but with which the robot falls
   double least_beyond_ = HUGE_VAL;  // smallest sum of shares by which a motion exceeds limits
@@ -331,8 +368,8 @@ class MotionSearch {
 
 SearchResult search_motion(const RobotModel& model, const std::vector<Dial>& dials,
                            const std::function<Pattern(const std::vector<double>&)>& make,
-                           const Progress& progress, bool simulated) {
-  return MotionSearch(model, dials, make, progress, simulated).run();
+                           const Progress& progress, bool simulated, const UsedValues& used) {
+  return MotionSearch(model, dials, make, progress, simulated, used).run();
 }
 
 bool postures_pass(const RobotModel& model, const std::function<Pattern()>& make) {

@@ -38,21 +38,22 @@ struct SearchResult {
   std::vector<double> nearest_values;  ///< values of the dials of this motion
 };
 
-/// The end of a motion in a simulation with the default controller, such as "with dtad, the robot
-/// fell at 3.2 s ..."; "" if the robot stands at its end.
-std::string end_in_simulation(const RobotModel& model, const Pattern& pattern);
+/// The values that a motion really has, if it does not take all values of the dials as they are.
+using UsedValues = std::function<std::vector<double>(std::vector<double>)>;
 
 /// Tries the values of the dials, those nearest to the defaults first, until the check accepts the
 /// motion for a profile of the robot. If none of them passes, the search continues from the trial
-/// that is nearest to passing: it moves one value after the other, or two at once, and keeps
+/// that is nearest to passing: it moves one value after the other, then all together, and keeps
 /// changes that come nearer. `make` returns the pattern for values of the dials; it may throw
 /// Error(bad_pattern) or Error(usage) for values that the robot cannot do. The number of trials is
 /// bounded, not their time, so that the same input gives the same result. With `simulated`, the
 /// result is the first accepted motion after which the robot stands in a simulation. If it falls in
-/// all simulated motions, the result is the first accepted motion.
+/// all simulated motions, the result is the first accepted motion. `used` gives the values that the
+/// motion for values of the dials really has.
 SearchResult search_motion(const RobotModel& model, const std::vector<Dial>& dials,
                            const std::function<Pattern(const std::vector<double>&)>& make,
-                           const Progress& progress = {}, bool simulated = false);
+                           const Progress& progress = {}, bool simulated = false,
+                           const UsedValues& used = std::identity());
 
 /// The values that are not the defaults, such as "--stride 0.02 m, --period 0.7 s".
 std::string changed_values(const std::vector<Dial>& dials, const std::vector<double>& values);

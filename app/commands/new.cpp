@@ -106,11 +106,8 @@ Dial height_dial(const RobotModel& model, double given,
   return height_dial(starting_height(model), given, shares);
 }
 
-using UsedValues = std::function<std::vector<double>(std::vector<double>)>;
-
 // The values of a finished search, or the defaults if there are none. Prints what was changed and
-// what limits the robot. `used` are the values that the motion really has, if it does not take all
-// values of the dials as they are.
+// what limits the robot.
 std::vector<double> values_of(const Context& context, const RobotModel& model,
                               const std::vector<Dial>& dials, const SearchResult& result,
                               const UsedValues& used = std::identity()) {
@@ -154,7 +151,8 @@ std::vector<double> values_that_pass(const Context& context, const RobotModel& m
                                      bool simulated = false,
                                      const UsedValues& used = std::identity()) {
   SearchResult result;
-  if (model.has_soles()) result = search_motion(model, dials, make, context.progress(), simulated);
+  if (model.has_soles())
+    result = search_motion(model, dials, make, context.progress(), simulated, used);
   return values_of(context, model, dials, result, used);
 }
 
@@ -206,8 +204,18 @@ void fit_steps(const Context& context, const RobotModel& model, const NewOptions
   if (!lists_lift) others.push_back(rise);
   for (WalkDial& each : others) {
     each.dial.values.resize(1);
-    each.dial.step /= 2;  // a low step is a few millimetres high
+    each.dial.step /= 2;
     turned.push_back(each);
+  }
+  // Rotors that weigh much beside their legs need most of their torque for the lift, so the search
+  // may lower it as far as the generator allows, in the steps of the lift in a pattern.
+  const WalkLimits limits = walk_limits(model);
+  for (WalkDial& each : turned) {
+    if (each.dial.most <= each.dial.least) continue;
+    if (each.dial.name == "--period") each.dial.least = std::max(each.dial.least, limits.period);
+    if (each.dial.name != "--lift") continue;
+    each.dial.step = 1e-4;
+    each.dial.least = each.dial.step * std::ceil(limits.lift / each.dial.step);
   }
   std::vector<Dial> dials;
   for (const WalkDial& each : turned) dials.push_back(each.dial);
@@ -219,22 +227,16 @@ void fit_steps(const Context& context, const RobotModel& model, const NewOptions
       walk.lift = std::min(walk.lift, rounded(w.lift * walk.period / w.period, 5e-4));
     return walk;
   };
-  const double lift = w.lift;
-  const auto lift_dial =
-      static_cast<size_t>(std::find_if(dials.begin(), dials.end(),
-                                       [](const Dial& each) { return each.name == "--lift"; }) -
-                          dials.begin());
-  const std::vector<double> values = values_that_pass(
+  const auto lift_dial = std::find_if(dials.begin(), dials.end(),
+                                      [](const Dial& each) { return each.name == "--lift"; }) -
+                         dials.begin();
+  w = with(values_that_pass(
       context, model, dials,
-      [&](const std::vector<double>& each) { return walk_pattern(model, with(each)); }, true,
-      [&](std::vector<double> each) {
-        if (each[lift_dial] != lift) each[lift_dial] = with(each).lift;
-        return each;
-      });
-  w = with(values);
-  if (w.lift != lift && values[lift_dial] == lift)
-    context.print("  the feet rise by " + text::brief(w.lift) + " m in place of " +
-                  text::brief(lift) + " m, because the steps are quick (--lift changes this)\n");
+      [&](const std::vector<double>& values) { return walk_pattern(model, with(values)); }, true,
+      [&](std::vector<double> values) {
+        values[static_cast<size_t>(lift_dial)] = with(values).lift;
+        return values;
+      }));
 }
 
 // Shares of the default length of a step. For legs without the roll of the ankle, shorter steps are

@@ -154,6 +154,11 @@ TEST(BrokenRobot, WrongMassesAndNumbers) {
             "r.urdf:3: link trunk: <mass value=\"nan\">: 'nan' is not a finite number");
   EXPECT_EQ(with_trunk(inertia("1.5kg", "0.01")),
             "r.urdf:3: link trunk: <mass value=\"1.5kg\">: '1.5kg' is not a finite number");
+  // A quotation mark is missing, so the value goes on to the next one.
+  const std::string long_value =
+      with_trunk(inertia("1\n <a/>\n" + std::string(2'000'000, 'x'), "1"));
+  EXPECT_EQ(long_value.find('\n'), std::string::npos) << long_value;
+  EXPECT_LT(long_value.size(), 250u) << long_value;
   EXPECT_EQ(with_trunk(inertia("1", "inf")),
             "r.urdf:3: link trunk: <inertia ixx=\"inf\">: 'inf' is not a finite number");
   EXPECT_EQ(with_trunk(inertia("2e6", "0.01")),

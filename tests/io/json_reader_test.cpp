@@ -62,6 +62,7 @@ TEST(JsonReader, NamesASlipInWordsAboutTheText) {
       {"{\"t\": 5.}", "f.json:1:7: a number needs a digit after its decimal point: write 5 or 5.0"},
       {"{\"t\": +5}", "f.json:1:7: a number must not begin with +: write 5"},
       {"{\"t\": 0,5}", "f.json:1:8: a number has a decimal point, not a comma"},
+      {"{\"at\": [-0,042]}", "f.json:1:11: a number has a decimal point, not a comma"},
       {"{\"a\": 1, \u540d\u524d\u540d\u524d\u540d\u524d\u540d\u524d\u540d: 1}",
        "f.json:1:10: the name \u540d\u524d\u540d\u524d\u540d\u524d\u540d\u524d... needs"},
       {"{\"\x95\": \"\x95\x5c\"}", "f.json:1:3: the text is not in the encoding UTF-8 here"},

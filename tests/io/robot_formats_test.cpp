@@ -481,6 +481,63 @@ TEST(Mjcf, WrongModelsAreRefusedInOneLine) {
   EXPECT_THROW(parse_robot("<mujoco><worldbody>", "m.xml", {}), Error);
 }
 
+// MuJoCo gets a text that was prepared for it. Its message has the line of this text, but the user
+// needs the line of the file.
+TEST(Mjcf, TheLineOfTheFileIsNamed) {
+  if (!has_mujoco()) GTEST_SKIP() << "built without MuJoCo";
+  const auto error = [](const std::string& geom, const std::string& more = "") {
+    const std::string text =
+        "<mujoco>\n <!-- a\n comment -->\n\n <statistic extent='1'/>\n <worldbody>\n  <body "
+        "name='a'><freejoint/>\n   <geom size='0.1'/>\n   <body name='b'><joint name='j'/>\n\n"
+        "    <geom " +
+        geom + "/></body>\n  </body>\n </worldbody>\n" + more + "</mujoco>\n";
+    try {
+      parse_robot(text, "m.xml", {});
+    } catch (const Error& e) {
+      return std::string(e.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_EQ(error("size='0.1' pos='hello 0 0'"),
+            "m.xml:11: MuJoCo: XML Error: problem reading attribute 'pos' Element 'geom'; correct "
+            "this place");
+  EXPECT_EQ(error("size='0.1' pos='0 0'").substr(0, 58),
+            "m.xml:11: MuJoCo: XML Error: attribute 'pos' does not have");
+  const std::string actuator =
+      error("size='0.1'", " <actuator>\n  <motor joint='k'/>\n </actuator>\n");
+  EXPECT_TRUE(actuator.starts_with("m.xml:15: MuJoCo: ")) << actuator;
+  EXPECT_EQ(actuator.find("line"), std::string::npos) << actuator;
+}
+
+// Old Mac programs end lines with a carriage return alone, and editors of Windows put a mark before
+// the text.
+TEST(RobotFormats, LineEndsAndMarksOfOtherSystems) {
+  const RobotModel model = load_robot("hoap1", {{AYUMI_SOURCE_DIR "/robots"}});
+  for (const auto& [text, name] :
+       {std::pair<std::string, std::string>{test::body_text_of(model), "r.body"},
+        {ztk_text(model.description(), model.dof_names()), "r.ztk"}})
+    for (const std::string end : {"\r", "\r\n"}) {
+      std::string other = "\xef\xbb\xbf";
+      for (const char c : text) other += c == '\n' ? end : std::string(1, c);
+      EXPECT_EQ(from_text(other, name).dof_names(), from_text(text, name).dof_names()) << name;
+    }
+}
+
+TEST(RobotFormats, EmptyAndWideTextsAreNamed) {
+  const auto error = [](const std::string& text, const std::string& file) {
+    try {
+      parse_robot(text, file, {});
+    } catch (const Error& e) {
+      return std::string(e.what());
+    }
+    return std::string("no error");
+  };
+  for (const char* file : {"r.body", "r.ztk", "r.sdf", "r.xml", "r.urdf"})
+    EXPECT_TRUE(error(" \n", file).starts_with(std::string(file) + ": the file is empty")) << file;
+  EXPECT_NE(error(std::string("\xff\xfe\0\0<\0\0\0", 8), "r.urdf").find("UTF-32"),
+            std::string::npos);
+}
+
 TEST(Sdf, FramesPosesAndNestedModels) {
   const auto model = [](const std::string& inside, const std::string& version = "1.9") {
     return parse_robot("<sdf version='" + version +
@@ -820,6 +877,33 @@ links:
             notes.end());
 }
 
+// The order of the joints follows from their ids. A joint that is held, because it carries no mass,
+// has no place in it.
+TEST(ChoreonoidBody, JointsThatAreHeldHaveNoPlaceInTheOrder) {
+  const test::TemporaryFolder folder;
+  const std::string joint = "mass: 1, joint_type: revolute, joint_axis: Y, joint_id: ";
+  const std::string file =
+      folder
+          .write("r.body",
+                 "format: ChoreonoidBody\nformat_version: 2.0\nlinks:\n"
+                 "  - { name: base, mass: 1, inertia: [1, 0, 0, 0, 1, 0, 0, 0, 1] }\n"
+                 "  - { name: a, parent: base, inertia: [1, 0, 0, 0, 1, 0, 0, 0, 1], " +
+                     joint +
+                     "2 }\n"
+                     "  - { name: b, parent: a, inertia: [1, 0, 0, 0, 1, 0, 0, 0, 1], " +
+                     joint +
+                     "0 }\n"
+                     "  - { name: c, parent: b, joint_type: revolute, joint_id: 3 }\n")
+          .string();
+  const RobotDescription robot = load_robot_description(file);
+  EXPECT_EQ(RobotModel(robot).dof_names(), (std::vector<std::string>{"b", "a"}));
+  const std::vector<std::string>& notes = robot.assumptions;
+  EXPECT_NE(std::find(notes.begin(), notes.end(),
+                      "no joint has the joint_id 1, but a joint has the joint_id 3; is the file "
+                      "complete?"),
+            notes.end());
+}
+
 TEST(ChoreonoidBody, WrongBodiesAreRefusedInOneLine) {
   const std::string head = "format: ChoreonoidBody\nformat_version: 1.0\nlinks:\n";
   const auto error = [&](const std::string& text) {
@@ -838,7 +922,10 @@ TEST(ChoreonoidBody, WrongBodiesAreRefusedInOneLine) {
   };
   has(error("format: ChoreonoidBody\nformat_version: 9\nlinks:\n - {name: a}\n"), "version 9");
   has(error(head + "  - { name: a, mass: nan }\n"), "r.body:4: 'nan' is not a finite number");
-  has(error(head + "  - { name: a, mass: '1,5' }\n"), "'1,5' is not a finite number");
+  has(error(head + "  - { name: a, mass: '1,5' }\n"),
+      "'1,5' is not a finite number; write a decimal point");
+  has(error(head + "  - { name: a, mass: 1, centerOfMass: [0,1, 0,2, 0] }\n"),
+      "3 numbers are needed, found 5; if the commas are decimal commas, write decimal points");
   has(error(head + "  - { name: a, mass: 1\n"), "this is not valid YAML");
   has(error("format: ChoreonoidBody\n"), "no list of links");
   has(error("- a\n"), "must be a map");

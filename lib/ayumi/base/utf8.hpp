@@ -1,6 +1,7 @@
 #pragma once
 // Reads text of other programs, which is not always UTF-8. The functions are defined in text.cpp.
 
+#include <string>
 #include <string_view>
 
 namespace ayumi::text {
@@ -12,5 +13,9 @@ size_t utf8_character(std::string_view text, char32_t& code);
 
 /// The index of the first byte that is no part of UTF-8 text; npos if there is none.
 size_t not_utf8_at(std::string_view text);
+
+/// The text without the mark of UTF-8 at its beginning, and with line feeds at the ends of lines
+/// that have carriage returns (macOS before 10, Windows).
+std::string with_line_feeds(std::string_view text);
 
 }  // namespace ayumi::text

@@ -101,12 +101,10 @@ void check_parameters(const RobotModel& model, const WalkParameters& p) {
   if (p.rise != 0) check_stairs(model, p);
   require_range("walk", "steps", p.steps, 1, 10000, "");
   require_range("walk", "stride", p.stride, -0.6 * leg, 0.6 * leg, " m");
-  // Legs swing as pendulums do: a robot of a quarter of HOAP-1's size can step twice as fast.
-  const double fastest = 0.2 * std::min(1.0, std::sqrt(size_beside_hoap1(model)));
-  require_range("walk", "period", p.period, 0.01 * std::floor(100 * fastest), 10, " s");
+  const WalkLimits limits = walk_limits(model);
+  require_range("walk", "period", p.period, limits.period, 10, " s");
   require_range("walk", "double_support", p.double_support, 0.05, 0.6, "");
-  const double least_lift = std::max(0.01 * leg, std::min(kLeastLift, walk_defaults(model).lift));
-  require_range("walk", "lift", p.lift, least_lift, 0.4 * leg, " m");
+  require_range("walk", "lift", p.lift, limits.lift, 0.4 * leg, " m");
   require_range("walk", "side", p.side, -0.4 * leg, 0.4 * leg, " m");
   require_range("walk", "turn", p.turn * 180 / M_PI, -0.6 * 180 / M_PI, 0.6 * 180 / M_PI, " deg");
   require_range("walk", "zmp_inwards", p.zmp_inwards, 0, half_sole_width(model), " m");
@@ -225,6 +223,13 @@ WalkParameters walk_defaults(const RobotModel& model) {
   p.lift = 1e-3 * std::round(1e3 * size * p.lift);
   p.period = 0.01 * std::round(100 * slow * p.period);
   return p;
+}
+
+WalkLimits walk_limits(const RobotModel& model) {
+  // Legs swing as pendulums do: a robot of a quarter of HOAP-1's size can step twice as fast.
+  const double fastest = 0.2 * std::min(1.0, std::sqrt(size_beside_hoap1(model)));
+  return {0.01 * std::floor(100 * fastest),
+          std::max(0.01 * leg_length(model), std::min(kLeastLift, walk_defaults(model).lift))};
 }
 
 WalkParameters stair_defaults(const RobotModel& model, double rise) {

@@ -29,6 +29,12 @@ struct WalkParameters {
 /// root of this ratio.
 WalkParameters walk_defaults(const RobotModel& model);
 
+/// The shortest period [s] and the lowest lift [m] that walk_pattern() accepts for a robot.
+struct WalkLimits {
+  double period = 0, lift = 0;
+};
+WalkLimits walk_limits(const RobotModel& model);
+
 /// Defaults for a staircase with stairs of the height `rise` [m]: stairs slightly longer than the
 /// sole, a lower COG, slower and higher steps.
 WalkParameters stair_defaults(const RobotModel& model, double rise);

@@ -176,7 +176,9 @@ std::vector<WrittenFile> write_hrpsys(const RobotModel&, const MotionFile& motio
     const auto at = static_cast<size_t>(k);
     const double time = motion.times[at];
     const BasePose& base = motion.base[at];
-    const Eigen::Vector3d &p = base.position, rpy = matrix_to_rpy(base.attitude.toRotationMatrix());
+    const Eigen::Vector3d& p = base.position;
+    const Eigen::Vector3d rpy =
+        matrix_to_rpy(base.attitude.toRotationMatrix()).unaryExpr(&repeatable);
     for (WrittenFile& file : files) {
       const auto row = [](const auto& values) {
         return std::vector<double>(values.begin(), values.end());
@@ -188,7 +190,7 @@ std::vector<WrittenFile> write_hrpsys(const RobotModel&, const MotionFile& motio
         file.bytes += row_text(time, {p.x(), p.y(), p.z(), rpy.x(), rpy.y(), rpy.z()});
       if (file.extension == ".zmp") {
         const Eigen::Vector3d local = base.attitude.inverse() * (motion.zmp[at] - p);
-        file.bytes += row_text(time, row(local));
+        file.bytes += row_text(time, row(local.unaryExpr(&repeatable).eval()));
       }
     }
   }

@@ -145,15 +145,18 @@ MotionFile read_poppy_move(const MotionInput& source) {
 std::vector<WrittenFile> write_poppy_move(const RobotModel&, const MotionFile& motion) {
   std::string text = "{\n  \"framerate\": " + text::exact(motion.rate) + ",\n  \"positions\": {";
   const Eigen::Index rows = motion.rows();
+  // The speeds are those of the angles as they are written, so that they are the same if the file
+  // is read and written again.
+  const Eigen::MatrixXd written = motion.values.unaryExpr(
+      [](double angle) { return kRadiansPerDegree * std::stod(degrees_text(angle)); });
   for (Eigen::Index k = 0; k < rows; ++k) {
     text += (k > 0 ? ",\n    \"" : "\n    \"") + text::exact(motion.times[static_cast<size_t>(k)]) +
             "\": {";
     const Eigen::Index a = std::max<Eigen::Index>(k - 1, 0), b = std::min(k + 1, rows - 1);
     for (size_t j = 0; j < motion.joints.size(); ++j) {
       const auto c = static_cast<Eigen::Index>(j);
-      const double speed = a == b ? 0
-                                  : (motion.values(b, c) - motion.values(a, c)) * motion.rate /
-                                        static_cast<double>(b - a);
+      const double speed =
+          a == b ? 0 : (written(b, c) - written(a, c)) * motion.rate / static_cast<double>(b - a);
       text += (j > 0 ? ", \"" : "\"") + motion.joints[j] + "\": [" +
               degrees_text(motion.values(k, c)) + ", " + degrees_text(speed) + "]";
     }

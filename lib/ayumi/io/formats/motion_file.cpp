@@ -94,6 +94,8 @@ int find_joint(const RobotModel& model, const std::string& name) {
   return same;
 }
 
+double repeatable(double value) { return std::round(1e12 * value) / 1e12 + 0.0; }
+
 NumberRows number_rows(const MotionInput& source, std::string_view text,
                        const std::string& separators) {
   NumberRows result;

@@ -85,6 +85,10 @@ struct WrittenFile {
   std::string bytes;
 };
 
+/// A value that follows from an attitude [rad, m], rounded to 1e-12. A file that was read and is
+/// written again then has the same values, because the errors of the conversion are below 1e-15.
+double repeatable(double value);
+
 /// Whether a line is a comment (# or %).
 inline bool is_comment(std::string_view line) {
   return line.starts_with('#') || line.starts_with('%');

@@ -137,7 +137,7 @@ std::vector<WrittenFile> write_zvs(const RobotModel& model, const MotionFile& mo
     const double dt = 1 / motion.rate;
     text += text::exact(dt) + " " + std::to_string(width) + " (";
     const BasePose& base = motion.base[k];
-    const Eigen::Vector3d turn = log_rotation(base.attitude);
+    const Eigen::Vector3d turn = log_rotation(base.attitude).unaryExpr(&repeatable);
     for (const double value : base.position) text += " " + text::exact(value);
     for (const double value : turn) text += " " + text::exact(value);
     for (const double value : motion.values.row(static_cast<Eigen::Index>(k)))

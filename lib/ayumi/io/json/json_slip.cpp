@@ -414,8 +414,11 @@ class SlipFinder {
       return say(at_, "'" + number + "' is not a number: write " + number.substr(0, unit) +
                           " without " + number.substr(unit) +
                           " (the file states its units, and an expression needs quotation marks)");
-    if (number.size() > 1 && number.front() == '0' && is_decimal(number[1]))
+    if (number.size() > 1 && number.front() == '0' && is_decimal(number[1])) {
+      if (at_ > 1 && text_[at_ - 1] == ',' && is_decimal(text_[at_ - 2]))
+        return say(at_ - 1, "a number has a decimal point, not a comma", true);
       return say(at_, "a number must not begin with an extra 0: " + number);
+    }
     say(at_, "'" + number + "' is not a number (an expression needs quotation marks)");
   }
 

@@ -15,8 +15,10 @@
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/base/utf8.hpp"
 #include "ayumi/io/robot/mesh_place.hpp"
 #include "ayumi/io/run/sha256.hpp"
+#include "ayumi/io/table/comma_cells.hpp"
 #include "ayumi/math/elementary.hpp"
 #include "ayumi/model/validate.hpp"
 
@@ -43,7 +45,7 @@ class BodyReader {
   RobotDescription read(const std::string& bytes) {
     YAML::Node root;
     try {
-      root = YAML::Load(bytes);
+      root = YAML::Load(text::with_line_feeds(bytes));
     } catch (const YAML::Exception& error) {
       fail(ErrorCode::bad_file, {path_.string(), "", error.mark.line + 1},
            "this is not valid YAML (" + error.msg + "); correct this place");
@@ -111,7 +113,8 @@ class BodyReader {
     double value = 0;
     const auto [stop, error] = std::from_chars(begin, end, value);
     if (error != std::errc() || stop != end || !std::isfinite(value))
-      complain(node, "'" + text + "' is not a finite number");
+      complain(node, "'" + text + "' is not a finite number" +
+                         (text.find(',') != std::string::npos ? "; write a decimal point" : ""));
     return value;
   }
 
@@ -128,7 +131,8 @@ class BodyReader {
     for (const YAML::Node& each : node) values.push_back(number(each));
     if (values.size() != count)
       complain(node, std::to_string(count) + " numbers are needed, found " +
-                         std::to_string(values.size()));
+                         std::to_string(values.size()) +
+                         (values.size() > count ? kDecimalCommas : ""));
     return values;
   }
 
@@ -427,6 +431,13 @@ class BodyReader {
         fail(ErrorCode::bad_file, {path_.string()},
              "the joints " + ids_[i - 1].second + " and " + ids_[i].second +
                  " have the same joint_id " + text::exact(ids_[i].first) + "; give each its own");
+    for (size_t i = 0; i < ids_.size(); ++i)
+      if (ids_[i].first != static_cast<double>(i)) {
+        robot_.assumptions.push_back("no joint has the joint_id " + std::to_string(i) +
+                                     ", but a joint has the joint_id " +
+                                     text::exact(ids_.back().first) + "; is the file complete?");
+        break;
+      }
     if (ids_.size() != moving) return;  // not all joints have an id
     for (const auto& [id, name] : ids_) robot_.joint_order.push_back(name);
   }

@@ -12,6 +12,7 @@
 #include <cstring>
 #include <memory>
 #include <mutex>
+#include <regex>
 #include <set>
 
 #include "ayumi/base/counted.hpp"
@@ -123,7 +124,22 @@ std::string probe() {
 
 using Files = std::map<std::string, std::string>;
 
-Model compile(const fs::path& path, const Files& files) {
+// The place in the file of what MuJoCo complains about. Its message ends with the line of the text
+// that it was given, in one of two forms.
+[[noreturn]] void complain(const fs::path& path, const MjcfText& text, std::string words) {
+  static const std::regex place("(, |\n)?line (= )?(\\d+)(, column = -?\\d+)?");
+  std::smatch match;
+  int line = 0;
+  if (std::regex_search(words, match, place)) {
+    const auto found = text.lines.find(std::atoi(match[3].str().c_str()));
+    if (found != text.lines.end()) line = found->second;
+    words = match.prefix().str() + match.suffix().str();
+  }
+  fail(ErrorCode::bad_model, {path.string(), "", line},
+       "MuJoCo: " + one_line(words) + "; correct this place");
+}
+
+Model compile(const fs::path& path, const MjcfText& text, const Files& files) {
   const std::unique_ptr<mjVFS, void (*)(mjVFS*)> vfs(new mjVFS, [](mjVFS* each) {
     mj_deleteVFS(each);
     delete each;
@@ -137,7 +153,7 @@ Model compile(const fs::path& path, const Files& files) {
   }
   char words[1000] = "the model could not be read";
   Model model(mj_loadXML("model.xml", vfs.get(), words, sizeof words), mj_deleteModel);
-  if (!model) fail(ErrorCode::bad_model, {path.string()}, "MuJoCo: " + one_line(words));
+  if (!model) complain(path, text, words);
   return model;
 }
 
@@ -170,7 +186,7 @@ class MjcfReader {
       use_true_mesh(asset, made, places_.find("", made.file), files);
     }
     files["model.xml"] = text_.xml;
-    compiled_ = compile(path_, files);
+    compiled_ = compile(path_, text_, files);
     weigh(std::move(files));
     m_ = compiled_.get();
     // The first body is the world.
@@ -234,7 +250,7 @@ class MjcfReader {
            "from meshes that are missing: " +
                text::join(missing, ", ") + "; add the files, or give these bodies an <inertial>");
     files["model.xml"] = text_.xml;
-    weighed_ = compile(path_, files);
+    weighed_ = compile(path_, text_, files);
   }
 
   std::string name_of(int type, int index, const std::string& other) const {

@@ -95,10 +95,21 @@ class Cleaner {
     TiXmlPrinter printer;
     document.Accept(&printer);
     text_.xml = printer.Str();
+    TiXmlDocument printed;
+    printed.Parse(text_.xml.c_str(), nullptr, TIXML_ENCODING_UTF8);
+    note_lines(printed.RootElement(), root);
     return std::move(text_);
   }
 
  private:
+  void note_lines(const TiXmlElement* printed, const TiXmlElement* stated) {
+    for (; printed && stated; printed = printed->NextSiblingElement()) {
+      text_.lines[printed->Row()] = stated->Row();
+      note_lines(printed->FirstChildElement(), stated->FirstChildElement());
+      stated = stated->NextSiblingElement();
+    }
+  }
+
   // MuJoCo puts the children of an included file in the place of the <include>.
   void include(TiXmlElement* parent, const fs::path& file, int depth) {
     for (TiXmlElement* child = parent->FirstChildElement(); child;) {
@@ -157,8 +168,8 @@ class Cleaner {
         const auto [stop, error] = std::from_chars(begin, end, value);
         if (!not_finite && (!numeric || (error == std::errc() && stop == end))) continue;
         complain_xml(path_.string(), element,
-                     "<" + element->ValueStr() + " " + each->Name() + "=\"" + text + "\">: '" +
-                         word + "' is not a finite number" +
+                     "<" + element->ValueStr() + " " + each->Name() + "=\"" + shown_value(text) +
+                         "\">: '" + word + "' is not a finite number" +
                          (word.find(',') != std::string::npos
                               ? "; numbers have a decimal point, and blanks between them"
                               : ""));

@@ -25,6 +25,9 @@ struct MjcfMesh {
 
 struct MjcfText {
   std::string xml;
+  /// Lines of the file in which the elements of `xml` begin, by their lines in `xml`; an element of
+  /// an included file, or one that was added, has 0.
+  std::map<int, int> lines;
   std::string files;                       ///< bytes of included files, one after the other
   std::map<std::string, MjcfMesh> meshes;  ///< assets by name
   /// fullinertia of bodies about the centre of mass, in the axes of the body [kg m^2].

@@ -929,6 +929,12 @@ void find_servos(RobotGuess& guess) {
 
 }  // namespace
 
+void hold_joint(RobotDescription& robot, JointDescription& joint) {
+  joint.type = JointType::fixed;
+  joint.mimic.clear();
+  std::erase(robot.joint_order, joint.name);
+}
+
 std::vector<std::string> hold_joints_without_mass(RobotDescription& robot) {
   std::map<std::string, double> mass;  // mass of a link and of all that it carries
   std::map<std::string, const JointDescription*> above;
@@ -953,8 +959,7 @@ std::vector<std::string> hold_joints_without_mass(RobotDescription& robot) {
   std::vector<std::string> held;
   for (JointDescription& joint : robot.joints) {
     if (!moves(joint) || mass[joint.child] > 0) continue;
-    joint.type = JointType::fixed;
-    joint.mimic.clear();
+    hold_joint(robot, joint);
     held.push_back(joint.name);
   }
   if (!held.empty())
@@ -1021,7 +1026,7 @@ std::vector<std::string> hold_play_of_gears(RobotDescription& robot) {
         continue;
       robot.servos[motor.name].backlash = play.upper - play.lower;
       robot.servos.erase(play.name);
-      play.type = JointType::fixed;
+      hold_joint(robot, play);
       held.push_back(play.name);
       driven.push_back(motor.name);
       break;

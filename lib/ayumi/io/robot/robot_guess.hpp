@@ -47,6 +47,9 @@ struct RobotGuess {
 /// rad. The inferred values are added to `assumptions`.
 RobotGuess guess_robot(RobotDescription robot);
 
+/// Makes a joint fixed at 0, also for the order of joints that the robot's file gives.
+void hold_joint(RobotDescription& robot, JointDescription& joint);
+
 /// Makes joints whose links weigh nothing fixed at 0, because the torque of a motor cannot move
 /// them, and `assumptions` says so. Returns their names.
 std::vector<std::string> hold_joints_without_mass(RobotDescription& robot);

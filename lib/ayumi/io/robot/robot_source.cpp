@@ -69,6 +69,9 @@ bool has_robot_ending(const fs::path& path) {
 RobotFormat robot_format(const std::string& bytes, const fs::path& path) {
   std::string_view text = bytes;
   const std::string extension = robot_ending(path);
+  using namespace std::string_view_literals;
+  if (text.starts_with("\xff\xfe\0\0"sv) || text.starts_with("\0\0\xfe\xff"sv))
+    refuse_robot(path, "this is text in UTF-32; save it as UTF-8");
   if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
     refuse_robot(path, "this is text in UTF-16; save it as UTF-8");
   // Binary data has a zero byte early on.
@@ -76,6 +79,8 @@ RobotFormat robot_format(const std::string& bytes, const fs::path& path) {
     refuse_robot(path, "this is binary data, and not the text of a robot");
   if (text.starts_with(kUtf8Mark)) text.remove_prefix(kUtf8Mark.size());
   text = without_leading_blanks(text);
+  if (text.empty() && (extension == ".body" || extension == ".ztk"))
+    refuse_robot(path, "the file is empty");
   if (extension == ".json") return RobotFormat::sidecar;
   if (text.starts_with("<")) {
     const std::string name = outermost_element(text);

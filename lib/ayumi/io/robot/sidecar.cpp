@@ -13,6 +13,7 @@
 #include "ayumi/io/json/document_format.hpp"
 #include "ayumi/io/json/json_reader.hpp"
 #include "ayumi/io/robot/facing.hpp"
+#include "ayumi/io/robot/robot_guess.hpp"
 #include "ayumi/io/robot/robot_source.hpp"
 #include "ayumi/io/robot/servo_reader.hpp"
 #include "ayumi/io/run/sha256.hpp"
@@ -371,8 +372,7 @@ void lock_joints(const JsonNode& node, RobotDescription& robot) {
     if (joint == robot.joints.end() || joint->type == JointType::fixed)
       item.complain("'" + item.string() + "' is not a moving joint of the URDF" +
                     text::suggestion(item.string(), names));
-    joint->type = JointType::fixed;
-    joint->mimic.clear();
+    hold_joint(robot, *joint);
   }
 }
 

@@ -200,7 +200,7 @@ class Checker {
   void finite_numbers(const TiXmlElement* element, const std::string& owner,
                       const NumericAttribute& wanted, const std::string& text) const {
     const std::string place =
-        owner + "<" + element->Value() + " " + wanted.name + "=\"" + text + "\">: ";
+        owner + "<" + element->Value() + " " + wanted.name + "=\"" + shown_value(text) + "\">: ";
     if (text.find("${") != std::string::npos) complain(element, place + kXacro);
     xml_numbers(file_, element, place, text, wanted.count);
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/shortened_text.hpp"
 
 namespace ayumi {
 
@@ -100,6 +101,14 @@ std::string xml_attribute(const TiXmlElement* element, const char* name, const s
   return value ? value : other;
 }
 
+std::string shown_value(const std::string& value) {
+  constexpr size_t kMost = 80;  // bytes. Chosen: nine numbers with six digits
+  std::string shown;
+  for (const char c : value.substr(0, kMost + 1))
+    shown += std::isspace(static_cast<unsigned char>(c)) ? ' ' : c;
+  return text::shortened(shown, [](const std::string& each) { return each.size() <= kMost; });
+}
+
 std::vector<double> xml_numbers(const std::string& file, const TiXmlElement* at,
                                 const std::string& place, const std::string& text, int count) {
   std::vector<double> values;
@@ -114,7 +123,8 @@ std::vector<double> xml_numbers(const std::string& file, const TiXmlElement* at,
     const auto [stop, error] = std::from_chars(here, end, value);
     const bool whole = stop == end || std::isspace(static_cast<unsigned char>(*stop));
     if (error != std::errc() || !whole || !std::isfinite(value)) {
-      const std::string shown(word, std::find(word, end, ' '));
+      const std::string shown = shown_value(
+          {word, std::find_if(word, end, [](unsigned char c) { return std::isspace(c); })});
       complain_xml(file, at,
                    place + "'" + shown + "' is not a finite number" +
                        (shown.find(',') != std::string::npos

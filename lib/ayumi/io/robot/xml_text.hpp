@@ -21,6 +21,9 @@ void parse_xml(TiXmlDocument& document, const std::string& bytes, const std::str
 /// The attribute of an element, or `other` if it is missing or there is no element.
 std::string xml_attribute(const TiXmlElement* element, const char* name, const std::string& other);
 
+/// A value of an attribute for a message: in one line, and cut off if it is long.
+std::string shown_value(const std::string& value);
+
 /// The `count` numbers in `text`, which is in the element `at`; a message begins with `place`.
 /// Throws Error(bad_file) if a word is not a finite number, or if the number of words is not
 /// `count`.

@@ -13,6 +13,7 @@
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/base/utf8.hpp"
 #include "ayumi/io/degrees.hpp"
 #include "ayumi/io/run/sha256.hpp"
 #include "ayumi/io/table/comma_cells.hpp"
@@ -62,7 +63,7 @@ class ZtkReader {
   explicit ZtkReader(const fs::path& path) : path_(path) {}
 
   RobotDescription read(const std::string& bytes) {
-    split(bytes);
+    split(text::with_line_feeds(bytes));
     robot_.name = path_.stem().string();
     robot_.urdf_file = path_.string();
     robot_.sha256 = sha256(bytes);
@@ -144,7 +145,8 @@ class ZtkReader {
     if (values.size() != count)
       complain(field.line, field.key + ": " + text::counted(count, "number") +
                                (count == 1 ? " is" : " are") + " needed, found " +
-                               std::to_string(values.size()));
+                               std::to_string(values.size()) +
+                               (values.size() > count ? kDecimalCommas : ""));
     return values;
   }
 

@@ -7,6 +7,10 @@
 
 namespace ayumi {
 
+/// The end of a message about a list with more numbers than it should have.
+inline constexpr const char* kDecimalCommas =
+    "; if the commas are decimal commas, write decimal points";
+
 inline std::string_view trimmed(std::string_view text) {
   const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
   while (!text.empty() && blank(text.front())) text.remove_prefix(1);
