@@ -15,6 +15,7 @@
 #include "ayumi/check/mistake_hypotheses.hpp"
 #include "ayumi/check/mistake_search.hpp"
 #include "ayumi/plan/sample.hpp"
+#include "tests/support/biped.hpp"
 #include "tests/support/robot_motions.hpp"
 
 namespace ayumi::test {
@@ -639,6 +640,47 @@ TEST(PlantedMistakes, AShorterFlightIsNamedForAHopThatIsTooHigh) {
   ASSERT_TRUE(std::regex_search(found, flight, flight_words())) << found;
   shorten_flight(pattern, flight);
   EXPECT_TRUE(is_consistent(pattern, options)) << found;
+}
+
+TEST(PlantedMistakes, AMissingHeightAtAnEndOfAFlightIsNamed) {
+  for (const size_t phase : {0u, 1u}) {
+    Pattern pattern = jump_pattern(small(), jump_defaults(small()));
+    pattern.profile = "hoap1-strong";
+    const double end = pattern.phases[phase].until;
+    std::erase_if(pattern.keyframes, [&](const Keyframe& k) { return std::abs(k.t - end) < 1e-9; });
+    const std::string found = texts_of(likely_mistakes(small(), pattern, strong_options(pattern)));
+    EXPECT_TRUE(std::regex_search(
+        found, std::regex("^/phases/1: no keyframe gives the COG height at the " +
+                          std::string(phase == 0 ? "lift-off" : "landing") +
+                          ".*with a key of the same height there, the pattern is consistent")))
+        << found;
+  }
+}
+
+// Legs without ankle roll do not reach the ZMP in the middle of a sole, so the middle is no remedy.
+TEST(PlantedMistakes, PointsOfTheZmpWithTheWrongSignAreNamed) {
+  RobotDescription robot = biped_description();
+  for (JointDescription& joint : robot.joints)
+    if (joint.name.ends_with("ankle_roll")) joint.type = JointType::fixed;
+  const RobotModel model(robot);
+  Pattern pattern = walk_pattern(model, {.steps = 4,
+                                         .stride = 0.01,
+                                         .period = 0.5,
+                                         .double_support = 0.25,
+                                         .lift = 0.01,
+                                         .zmp_inwards = 0.02});
+  ASSERT_TRUE(check_consistency(model, sample(model, pattern)).consistent);
+  size_t step = 3;
+  while (pattern.phases[step].support != Support::right) ++step;
+  const double begin = pattern.phases[step - 1].until, until = pattern.phases[step].until;
+  for (Keyframe& key : pattern.keyframes)
+    if (key.zmp && key.t > begin - 1e-9 && key.t < until + 1e-9) key.zmp->point.y() *= -1;
+  const std::string found = texts_of(likely_mistakes(model, pattern, options_of(pattern)));
+  EXPECT_TRUE(std::regex_search(
+      found, std::regex("^/phases/" + std::to_string(step) +
+                        ": the robot stands on the right foot, .*with the other sign of y in these "
+                        "keyframes .*, the pattern is consistent")))
+      << found;
 }
 
 // The legs are too straight at both ends of the flight, and nothing else is wrong. A shorter flight

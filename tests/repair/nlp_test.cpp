@@ -31,6 +31,30 @@ Nlp disc(double radius2) {
   return nlp;
 }
 
+// The minimum of 10 x^2 + y^2 / 2 above two lines that meet in a kink at (0, 1). Newton's steps do
+// not know the kink, and alternate between the lines.
+Nlp kink() {
+  Nlp nlp;
+  nlp.start = Vector2d(0.3, 2);
+  nlp.lower = VectorXd::Constant(2, -kNoBound);
+  nlp.upper = VectorXd::Constant(2, kNoBound);
+  nlp.constraint_lower = VectorXd::Constant(1, 1);
+  nlp.constraint_upper = VectorXd::Constant(1, kNoBound);
+  nlp.jacobian.add(0, 0);
+  nlp.jacobian.add(0, 1);
+  nlp.hessian.add(0, 0);
+  nlp.hessian.add(1, 1);
+  const auto slope = [](double x) { return x < 0 ? 0.02 : -0.013; };
+  nlp.objective = [](const VectorXd& x) { return 10 * x[0] * x[0] + 0.5 * x[1] * x[1]; };
+  nlp.gradient = [](const VectorXd& x, VectorXd& g) { g << 20 * x[0], x[1]; };
+  nlp.constraints = [=](const VectorXd& x, VectorXd& g) { g[0] = x[1] + slope(x[0]) * x[0]; };
+  nlp.jacobian_values = [=](const VectorXd& x, VectorXd& v) { v << slope(x[0]), 1; };
+  nlp.hessian_values = [](const VectorXd&, double scale, const VectorXd&, VectorXd& v) {
+    v << 20 * scale, scale;
+  };
+  return nlp;
+}
+
 }  // namespace
 
 TEST(Nlp, NearestPointOfADisc) {
@@ -43,6 +67,17 @@ TEST(Nlp, NearestPointOfADisc) {
 
 TEST(Nlp, ImpossibleConstraintIsInfeasible) {
   EXPECT_EQ(solve(disc(-1)).status, NlpStatus::infeasible);
+}
+
+TEST(Nlp, EndsAtAKink) {
+  NlpOptions options;
+  EXPECT_EQ(solve(kink(), options).status, NlpStatus::iteration_limit);
+  options.stops_at_a_kink = true;
+  const NlpSolution s = solve(kink(), options);
+  EXPECT_EQ(s.status, NlpStatus::solved);
+  EXPECT_LT(s.iterations, 40);
+  EXPECT_LE(s.violation, 1e-7);
+  EXPECT_LT((s.x - Vector2d(0, 1)).norm(), 0.02);
 }
 
 TEST(Nlp, ProgressHearsEveryIterationAndStops) {

@@ -91,11 +91,13 @@ std::vector<Hypothesis> Hypotheses::of(Kind kind) const {
       return found_by({hypotheses::angle_units, hypotheses::time_units, hypotheses::stretched_keys,
                        hypotheses::length_units, hypotheses::target_units},
                       *examined_);
+    case Kind::supports:
+      return found_by({hypotheses::zmp_keys}, *examined_);
     case Kind::times:
       return found_by(
           {unequal_blocks, hypotheses::ground_heights, hypotheses::turns, hypotheses::level_feet,
-           hypotheses::stoops, hypotheses::all_sides, hypotheses::crossed_footholds,
-           hypotheses::key_times, hypotheses::phase_times},
+           hypotheses::stoops, hypotheses::missing_flight_keys, hypotheses::all_sides,
+           hypotheses::crossed_footholds, hypotheses::key_times, hypotheses::phase_times},
           *examined_);
     case Kind::irregular:
       return found_by({unequal_blocks, hypotheses::ground_heights, hypotheses::phase_times,
@@ -107,8 +109,8 @@ std::vector<Hypothesis> Hypotheses::of(Kind kind) const {
                       *examined_);
     case Kind::exchanges:
       return found_by({hypotheses::footholds, hypotheses::swapped_axes, hypotheses::zmp_sides,
-                       hypotheses::zmp_keys, hypotheses::all_zmp_keys, hypotheses::phase_sides,
-                       hypotheses::starts, hypotheses::key_sides, hypotheses::unlike_sides},
+                       hypotheses::all_zmp_keys, hypotheses::phase_sides, hypotheses::starts,
+                       hypotheses::key_sides, hypotheses::unlike_sides},
                       *examined_);
     case Kind::missing:
       return found_by({hypotheses::swings, hypotheses::double_supports, hypotheses::leg_keys,

@@ -40,6 +40,8 @@ class Hypotheses {
  public:
   enum class Kind {
     units,
+    /// Keys of the ZMP under a foot that does not carry the robot. These are few.
+    supports,
     times,
     /// Parts that differ from similar ones in the same pattern, or contradict another part.
     irregular,

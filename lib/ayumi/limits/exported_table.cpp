@@ -103,17 +103,23 @@ void place_target_rows(RowSite& site, int dof, double lead, double zero) {
   const Dof& joint = site.model.dofs()[dof];
   const RowSettings& settings = site.settings;
   // A tolerance below 0 requires a margin.
-  const double margin =
-      site.model.description().soft_limit_margin +
-      std::max({settings.joint_margin, 0.0, -site.tolerance(FindingKind::table_position)});
-  const auto [lower, upper] = target_range(joint, zero, margin);
-  const double middle = 0.5 * (lower + upper), half = 0.5 * (upper - lower);
+  const double tolerance =
+      std::min(site.tolerance(FindingKind::table_position), kExport.beyond_range);
+  const double margin = site.model.description().soft_limit_margin;
+  const TargetRange allowed = target_range(joint, zero, margin);
+  const TargetRange kept =
+      target_range(joint, zero, margin + std::max({settings.joint_margin, 0.0, -tolerance}));
+  const double middle = 0.5 * (kept.lower + kept.upper), half = 0.5 * (kept.upper - kept.lower);
   if (!joint.limited || !(half > 0)) return;
   for (int point = 0; point < site.count(); ++point) {
     const double used = site.most(point, [&](const CommandSample& s) {
       return std::abs(s.state.theta[dof] + lead * s.state.dtheta[dof] - middle) / half;
     });
     if (used <= settings.watched_share) continue;
+    const RobotState& given = site.given(point).state;
+    const auto [lower, upper] =
+        range_with_given({kept.lower, kept.upper}, {allowed.lower, allowed.upper},
+                         given.theta[dof] + lead * given.dtheta[dof], tolerance);
     site.add(kTargetRows, point, dof, JointRow{JointQuantity::angle, dof, 1, lead}, 1, lower, upper)
         .active = settings.active;
   }

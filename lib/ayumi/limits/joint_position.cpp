@@ -18,16 +18,14 @@ constexpr double kPositionTolerance = 1e-4;
 constexpr double kLeastHalfRange =
     1e-9;  // prevents a division by zero for a joint without a range [rad]
 
-struct Range {
-  double lower = 0, upper = 0;
-
+struct Range : AngleRange {
   double half() const { return 0.5 * (upper - lower); }
   double share(double theta) const {
     return std::abs(theta - 0.5 * (lower + upper)) / std::max(half(), kLeastHalfRange);
   }
 };
 
-Range range_of(const Dof& dof, double margin) { return {dof.lower + margin, dof.upper - margin}; }
+Range range_of(const Dof& dof, double margin) { return {{dof.lower + margin, dof.upper - margin}}; }
 
 void judge_joint_positions(JudgedMotion& motion, const JudgedSample& s) {
   const double margin = motion.model.description().soft_limit_margin;
@@ -36,7 +34,7 @@ void judge_joint_positions(JudgedMotion& motion, const JudgedSample& s) {
     if (!dof.limited) continue;
     const double theta = s.command.state.theta[i];
     const Range range = range_of(dof, margin);
-    const auto [lower, upper] = range;
+    const double lower = range.lower, upper = range.upper;
     motion.raise(FindingKind::joint_position, range.share(theta), s.k, i);
     const double beyond = std::max(lower - theta, theta - upper);
     if (beyond > motion.tolerance(FindingKind::joint_position))
@@ -49,18 +47,20 @@ const RowKind kPositionRows = {
 
 void place_position_rows(RowSite& site) {
   const RowSettings& settings = site.settings;
-  const double margin = site.model.description().soft_limit_margin + settings.joint_margin;
+  const double margin = site.model.description().soft_limit_margin;
   for (int i = 0; i < site.model.dof_count(); ++i) {
     const Dof& dof = site.model.dofs()[i];
-    const Range range = range_of(dof, margin);
+    const Range allowed = range_of(dof, margin);
+    const Range range = range_of(dof, margin + settings.joint_margin);
     if (!dof.limited || site.is_locked(i) || range.half() < 0) continue;
     for (int point = 0; point < site.count(); ++point) {
       const double used = site.most(
           point, [&](const CommandSample& sample) { return range.share(sample.state.theta[i]); });
       if (used <= settings.watched_share) continue;
-      site.add(kPositionRows, point, i, JointRow{JointQuantity::angle, i}, 1, range.lower,
-               range.upper)
-          .active = settings.active;
+      const auto [lower, upper] = range_with_given(range, allowed, site.given(point).state.theta[i],
+                                                   site.tolerance(FindingKind::joint_position));
+      site.add(kPositionRows, point, i, JointRow{JointQuantity::angle, i}, 1, lower, upper).active =
+          settings.active;
     }
   }
 }

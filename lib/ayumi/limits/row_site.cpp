@@ -24,6 +24,13 @@ std::array<Vector6d, 2> shared_load(const RobotModel& model, const CollocationPo
   return foot_wrenches(model, support, point.ground, point.plane, demand, base, wrench);
 }
 
+AngleRange range_with_given(AngleRange kept, const AngleRange& allowed, double given,
+                            double tolerance) {
+  if (given >= allowed.lower - tolerance) kept.lower = std::min(kept.lower, given);
+  if (given <= allowed.upper + tolerance) kept.upper = std::max(kept.upper, given);
+  return kept;
+}
+
 double RowSite::weight() const { return model.mass() * kGravity; }
 
 std::vector<const CommandSample*> RowSite::watched(int point) const {

@@ -123,6 +123,17 @@ struct RowSettings {
   } clearance;
 };
 
+/// A range of angles [rad] or [m].
+struct AngleRange {
+  double lower = 0, upper = 0;
+};
+
+/// The range of a row: `kept`, which is inside `allowed` by a distance that keeps the motion
+/// between two points inside, too. If the given value is between the two, the row only asks for
+/// this value. Otherwise, a joint that rests at its limit would have to move away from it.
+AngleRange range_with_given(AngleRange kept, const AngleRange& allowed, double given,
+                            double tolerance);
+
 struct RowSite {
   const RobotModel& model;
   const CommandSeries& series;  ///< the given motion

@@ -20,9 +20,10 @@ bool inside_a_window(const CorrectionSpec& spec, double begin, double end) {
                      [&](const auto& w) { return begin >= w.first && end <= w.second; });
 }
 
+// Times that are closer than this are equal [s]. Chosen: above rounding, below the sample period.
+constexpr double kTimeRounding = 1e-9;
+
 bool locked_within(const CorrectionSpec& spec, double begin, double end) {
-  // Times that are closer than this are equal [s]. Chosen: above rounding, below the sample period.
-  constexpr double kTimeRounding = 1e-9;
   return std::any_of(spec.locked_windows.begin(), spec.locked_windows.end(), [&](const auto& w) {
     return begin < w.second + kTimeRounding && end > w.first - kTimeRounding;
   });
@@ -30,6 +31,14 @@ bool locked_within(const CorrectionSpec& spec, double begin, double end) {
 
 bool is_locked(const CorrectionSpec& spec, int column) {
   return column >= 6 && !spec.locked.empty() && spec.locked[column - 6];
+}
+
+bool rests_within(const CorrectionSpec& spec, int column, double begin, double end) {
+  if (column < 6 || spec.resting.empty()) return false;
+  const std::vector<TimeWindow>& windows = spec.resting[static_cast<size_t>(column - 6)];
+  return std::any_of(windows.begin(), windows.end(), [&](const TimeWindow& w) {
+    return begin >= w.first - kTimeRounding && end <= w.second + kTimeRounding;
+  });
 }
 
 // If the first or last posture is at fault, it has to move. Then one variable moves all three
@@ -148,7 +157,7 @@ CorrectionVariables correction_variables(const RobotModel& model, const CommandS
     const double begin = (i - 3) * v.zero.spacing, end = (i + 1) * v.zero.spacing;
     if (!inside_a_window(spec, begin, end) || locked_within(spec, begin, end)) continue;
     for (int j = 0; j < columns; ++j)
-      if (!is_locked(spec, j)) v.index(i, j) = v.count++;
+      if (!is_locked(spec, j) && !rests_within(spec, j, begin, end)) v.index(i, j) = v.count++;
   }
   free_end(spec, 0, 0, v);
   free_end(spec, rows - 3, series.duration(), v);

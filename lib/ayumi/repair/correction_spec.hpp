@@ -31,8 +31,10 @@ struct CorrectionSpec {
   std::array<bool, 2> free_ends = {};      ///< whether the first and the last posture may move
   std::vector<bool> locked;                ///< locked joints by dof; empty if there is none
   std::vector<TimeWindow> locked_windows;  ///< windows in which nothing may move [s]
-  std::vector<double> kept_times;          ///< times at which the posture may not change [s]
-  std::array<bool, 2> locked_feet = {};    ///< feet that keep their paths, by Side
+  /// Windows of each dof in which it may not move, because it rests at a limit [s]; empty if none.
+  std::vector<std::vector<TimeWindow>> resting;
+  std::vector<double> kept_times;        ///< times at which the posture may not change [s]
+  std::array<bool, 2> locked_feet = {};  ///< feet that keep their paths, by Side
   Eigen::VectorXd weights;  ///< factors on the weights of the joints by dof; empty if all are 1
   Eigen::MatrixXd initial;  ///< initial control points; empty for no correction
 

@@ -126,6 +126,10 @@ inline constexpr Backoff kFirstBackoff = {1e-4, 0.998, 0.98, 5e-4};
 /// measured case changes between half and twice the value (constants.md). limit_share, zmp: between
 /// half and twice the value, figures change by less than 5 %. Test: none.
 inline constexpr Backoff kBackoffStep = {5e-4, 0.004, 0, 0.001};
+/// Largest speed of a joint that rests at a limit [rad/s]. Chosen: far below the speed of any
+/// motion, above the rounding of a table with four decimals and rows 1 ms apart. Test:
+/// RestingJoints.*.
+inline constexpr double kRestingSpeed = 0.05;
 /// Distance that the last program keeps from the check's own limits, as a share of the limit.
 /// Derived: above the rounding of a table's nine decimals. Test: LeastChange.* (to 2e-5).
 inline constexpr double kRounding = 1e-6;
@@ -442,6 +446,13 @@ inline constexpr double kStartPush = 1e-2, kWarmPush = 1e-6;
 /// measured case changes between half and twice the value (constants.md). Test:
 /// Nlp.NearestPointOfADisc.
 inline constexpr double kTolerance = 1e-6, kConstraintTolerance = 1e-7;
+/// Number of iterations in turn that change the objective by less than kKinkChange of it, after
+/// which a search that keeps all constraints counts as alternating about a kink. Its gradient may
+/// be as large as kKinkGradient then. Chosen: Newton's steps converge within fewer iterations, and
+/// the smallest change is only searched for at the end. Measured: between two sides of a kink, the
+/// objective changes by 1e-5 to 3e-5 of it, with a gradient of 0.02. Test: Nlp.EndsAtAKink.
+inline constexpr int kKinkIterations = 8;
+inline constexpr double kKinkChange = 1e-4, kKinkGradient = 0.1;
 /// The barrier falls by this factor, or to this power of itself. Chosen: faster than Ipopt's 0.2
 /// and 1.5, because Newton's steps follow. kBarrierFactor: no measured case changes between half
 /// and twice the value (constants.md). kBarrierPower: with half of the value, the number of

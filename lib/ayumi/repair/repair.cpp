@@ -17,6 +17,7 @@
 #include "ayumi/repair/repair_rounds.hpp"
 #include "ayumi/repair/repair_setup.hpp"
 #include "ayumi/repair/repair_state.hpp"
+#include "ayumi/repair/resting_joints.hpp"
 #include "ayumi/repair/robustness_cost.hpp"
 #include "ayumi/repair/rough_motion.hpp"
 #include "ayumi/repair/tighten_to_check_limits.hpp"
@@ -33,6 +34,9 @@ void set_up(RepairState& state) {
   state.spec = state.asked;
   state.spec.collisions = &state.collisions;
   state.spec.wrong_plan = wrong_plan(state.result.before);
+  state.spec.resting =
+      rests_at_limits(state.model, state.series, state.model.limits(state.spec.profile),
+                      state.result.before.findings);
   const CorrectionProblem nothing_moves(state.model, state.series, state.spec);
   take(state, nothing_moves.track(Eigen::VectorXd()));
   state.as_given = state.result;

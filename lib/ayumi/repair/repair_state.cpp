@@ -143,6 +143,7 @@ NlpSolution solve_relaxing_goals(RepairState& state, Nlp& hard, const std::strin
   }
   options.most_work = work_left(state, policy::rounds::kWorkForReasons);
   if (!state.flight) options.tolerance = tolerance;
+  options.stops_at_a_kink = tolerance >= policy::rounds::kTolerance;
   if (!state.flight && state.result.work.rounds == 0)
     options.max_iterations = std::min(options.max_iterations, policy::rounds::kBeforeFinerKnots);
   const Slacks slacks = soft_goal_slacks(*state.problem, state.series.dt, state.options.safety,

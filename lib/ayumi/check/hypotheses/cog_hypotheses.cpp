@@ -336,6 +336,31 @@ void rests(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
   }
 }
 
+void missing_flight_keys(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
+  for (size_t i = 1; i < of.pattern.phases.size(); ++i) {
+    const Phase& flight = of.pattern.phases[i];
+    if (flight.support != Support::none || flight.viip) continue;
+    const double ends[] = {of.begin_of(i), flight.until};
+    std::optional<double> heights[2];
+    for (const size_t k : height_keys(of))
+      for (int end = 0; end < 2; ++end)
+        if (std::abs(of.pattern.keyframes[k].t - ends[end]) < kSameInstant)
+          heights[end] = of.pattern.keyframes[k].cog_height;
+    if (heights[0].has_value() == heights[1].has_value()) continue;
+    const int missing = heights[0] ? 1 : 0;
+    const double height = *heights[1 - missing];
+    const char* names[] = {"lift-off", "landing"};
+    made.push_back(
+        {Rank::missing,
+         {of.phase_place(i),
+          std::string("no keyframe gives the COG height at the ") + names[missing] + ", at " +
+              seconds(ends[missing]) + "; that of the " + names[1 - missing] + " is " +
+              text::brief(height) + " m",
+          "with a key of the same height there"},
+         [t = ends[missing], height](Pattern& p) { keyframe_at(p, t).cog_height = height; }});
+  }
+}
+
 // The length of a flight determines how high the robot rises, and how fast it is at both ends.
 void shorter_flights(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
   struct Flight {

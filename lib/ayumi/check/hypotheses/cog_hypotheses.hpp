@@ -19,6 +19,8 @@ void held_cog(const ExaminedPattern& of, std::vector<Hypothesis>& made);
 void lower_take_offs(const ExaminedPattern& of, std::vector<Hypothesis>& made);
 /// A longer rest at the beginning or the end.
 void rests(const ExaminedPattern& of, std::vector<Hypothesis>& made);
+/// A missing key of the COG height at one end of a flight.
+void missing_flight_keys(const ExaminedPattern& of, std::vector<Hypothesis>& made);
 /// Shorter flights.
 void shorter_flights(const ExaminedPattern& of, std::vector<Hypothesis>& made);
 /// Another COG height.

@@ -94,6 +94,15 @@ bool hypotheses::is_of_contact(const Keyframe& key) {
   return (key.zmp && key.zmp->place != ZmpKey::Place::center) || key.feet[0] || key.feet[1];
 }
 
+Keyframe& hypotheses::keyframe_at(Pattern& pattern, double t) {
+  const auto after = std::find_if(pattern.keyframes.begin(), pattern.keyframes.end(),
+                                  [&](const Keyframe& key) { return key.t > t - kSameInstant; });
+  if (after != pattern.keyframes.end() && after->t < t + kSameInstant) return *after;
+  Keyframe added;
+  added.t = t;
+  return *pattern.keyframes.insert(after, added);
+}
+
 double hypotheses::whole_degrees(double radians) {
   constexpr double degree = std::numbers::pi / 180;
   return std::round(radians / degree) * degree;

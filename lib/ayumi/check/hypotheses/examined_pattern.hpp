@@ -68,6 +68,8 @@ namespace hypotheses {
 
 /// Whether a key states the place of a foot, or a place of the ZMP other than "center".
 bool is_of_contact(const Keyframe& key);
+/// The keyframe at this time [s], which is added if there is none.
+Keyframe& keyframe_at(Pattern& pattern, double t);
 /// The nearest angle in whole degrees [rad].
 double whole_degrees(double radians);
 /// A time in words.

@@ -80,17 +80,34 @@ void missing_zmp_keys(const ExaminedPattern& of, size_t phase, size_t wrong,
                        of.key_place(wrong) + " puts the ZMP " + zmp_words(of, wrong),
                    "with \"zmp\": \"" + foot + "\" in keyframes at these two times"},
                   [begin, until, place = place_under(support)](Pattern& p) {
-                    for (const double t : {begin, until}) {
-                      const auto after =
-                          std::find_if(p.keyframes.begin(), p.keyframes.end(),
-                                       [&](const Keyframe& key) { return key.t > t - 1e-9; });
-                      Keyframe added;
-                      added.t = t;
-                      const bool is_there =
-                          after != p.keyframes.end() && std::abs(after->t - t) < 1e-9;
-                      Keyframe& key = is_there ? *after : *p.keyframes.insert(after, added);
-                      key.zmp = ZmpKey{place};
-                    }
+                    for (const double t : {begin, until}) keyframe_at(p, t).zmp = ZmpKey{place};
+                  }});
+}
+
+// Points of the ZMP whose y has the wrong sign. On robots that have to keep the ZMP near the edge
+// of a sole, the middle of the sole is no remedy.
+void mirrored_points(const ExaminedPattern& of, size_t phase, const std::vector<size_t>& wrong,
+                     std::vector<Hypothesis>& made) {
+  const Support support = of.pattern.phases[phase].support;
+  std::vector<std::string> places;
+  for (const size_t k : wrong) {
+    Keyframe key = of.pattern.keyframes[k];
+    if (key.zmp->place != ZmpKey::Place::point) return;
+    key.zmp->point.y() *= -1;
+    if (!is_under(of, key, support)) return;
+    places.push_back(of.key_place(k));
+  }
+  const double y = of.pattern.keyframes[wrong.front()].zmp->point.y();
+  const bool several = places.size() > 1;
+  made.push_back({Rank::exchange,
+                  {of.phase_place(phase),
+                   std::string("the robot stands on the ") + name_of(stance_of(support)) +
+                       " foot, but " + text::join(places, " and ") + (several ? " put" : " puts") +
+                       " the ZMP on the other side (y is " + text::brief(y) + " m)",
+                   std::string("with the other sign of y") +
+                       (several ? " in these keyframes (" : " (") + text::brief(-y) + " m)"},
+                  [wrong](Pattern& p) {
+                    for (const size_t k : wrong) p.keyframes[k].zmp->point.y() *= -1;
                   }});
 }
 
@@ -164,6 +181,7 @@ void zmp_keys(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
     for (const size_t k : wrong) places.push_back(of.key_place(k));
     const std::string foot = name_of(stance_of(phase.support));
     const std::string at = zmp_words(of, wrong.front());
+    mirrored_points(of, i, wrong, made);
     made.push_back(
         {Rank::exchange,
          {of.phase_place(i),

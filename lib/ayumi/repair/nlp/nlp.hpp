@@ -66,6 +66,10 @@ struct NlpOptions {
   double start_push = repair_policy::solver::kStartPush;
   /// Tolerance of g, unscaled.
   double constraint_tolerance = repair_policy::solver::kConstraintTolerance;
+  /// Distances of bodies have kinks, where Newton's steps may alternate between two points without
+  /// end. If this is set, the solution ends with the status solved where several iterations in turn
+  /// keep all constraints and leave the objective nearly as it is.
+  bool stops_at_a_kink = false;
   bool mumps = false;  ///< use MUMPS for the linear systems of every program
   /// Solves linear systems without the widest vector instructions; the bits are the same.
   bool plain_kernels = false;
