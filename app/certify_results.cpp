@@ -1,7 +1,10 @@
 #include "certify_results.hpp"
 
+#include <cmath>
+
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
+#include "ayumi/base/largest_number.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/json/json_depth.hpp"
 
@@ -38,8 +41,7 @@ Json bound_json(double value) { return std::isfinite(value) ? Json(value) : Json
 
 }  // namespace
 
-std::string case_results_text(const Json& study, const std::string& shard,
-                              const KnownResults& results) {
+std::string case_results_text(const Json& study, const std::string& shard, const FileCases& cases) {
   Json head = {{"format", kCertifyFormat}, {"study", study}};
   if (!shard.empty()) head["shard"] = shard;
   head["columns"] = {"case",        "outcome",      "fell_at_s",
@@ -48,10 +50,9 @@ std::string case_results_text(const Json& study, const std::string& shard,
   text.resize(text.size() - 2);  // removes the end of the object
   text += ",\n \"cases\": [";
   const char* separator = "\n";
-  for (size_t i = 0; i < results.size(); ++i) {
-    if (!results[i]) continue;
-    Json row = Json::array({i});
-    for (const Json& cell : case_json(*results[i])) row.push_back(cell);
+  for (const auto& [number, result] : cases) {
+    Json row = Json::array({number});
+    for (const Json& cell : case_json(result)) row.push_back(cell);
     text += separator + row.dump();
     separator = ",\n";
   }
@@ -59,7 +60,7 @@ std::string case_results_text(const Json& study, const std::string& shard,
 }
 
 std::string add_case_results(const std::filesystem::path& file, const Json& study, bool must_exist,
-                             KnownResults& results) {
+                             FileCases& cases) {
   if (!must_exist && !std::filesystem::exists(file)) return "";
   std::string shard;
   const auto refuse = [&](const std::string& why) {
@@ -85,17 +86,22 @@ std::string add_case_results(const std::filesystem::path& file, const Json& stud
     }
     shard = json.value("shard", "");
     for (const auto& row : json.at("cases")) {
+      if (!row.at(0).is_number_unsigned()) refuse("a case has no number; " + remedy);
       const size_t number = row.at(0);
       if (number >= kMostCases)
         refuse("the number " + std::to_string(number) + " of a case is too large; the largest is " +
                std::to_string(kMostCases - 1));
-      if (number >= results.size()) results.resize(number + 1);
       const CaseResult result = case_of(nlohmann::json(row.begin() + 1, row.end()));
-      if (results[number] && !(*results[number] == result))
+      for (const double figure :
+           {result.fell_at, result.cog_error, result.torque, result.foot_tilt})
+        if (!(std::abs(figure) <= kLargestNumber))
+          refuse("case " + std::to_string(number) + " has the figure " + text::brief(figure) +
+                 ", which no simulation gives; " + remedy);
+      const auto [known, is_new] = cases.emplace(number, result);
+      if (!is_new && !(known->second == result))
         refuse("the result of case " + std::to_string(number) +
                " differs from the result in another file of the same study; run the study again "
                "with --force");
-      results[number] = result;
     }
   } catch (const Json::exception&) {
     refuse("this file does not hold results of ayumi certify, or a part of the file is missing; " +
@@ -104,6 +110,18 @@ std::string add_case_results(const std::filesystem::path& file, const Json& stud
     refuse("this file has an outcome that this version of Ayumi does not know; " + remedy);
   }
   return shard;
+}
+
+KnownResults first_cases(const FileCases& cases, long count) {
+  KnownResults results(static_cast<size_t>(count));
+  for (const auto& [number, result] : cases)
+    if (number < results.size()) results[number] = result;
+  return results;
+}
+
+void add_cases(const KnownResults& results, FileCases& cases) {
+  for (size_t i = 0; i < results.size(); ++i)
+    if (results[i]) cases.insert_or_assign(i, *results[i]);
 }
 
 std::string case_table(const UncertainTask& task, std::uint64_t seed, const KnownResults& results) {

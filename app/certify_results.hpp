@@ -3,22 +3,32 @@
 // merged from such files.
 
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "ayumi/study/certify.hpp"
 
 namespace ayumi::app {
 
+/// The cases of a file by their numbers. A file may have few cases with large numbers.
+using FileCases = std::map<size_t, CaseResult>;
+
+/// Those of the cases 0, 1, ..., count - 1 that are known.
+KnownResults first_cases(const FileCases& cases, long count);
+/// Adds the known results, also in place of those that the file has.
+void add_cases(const KnownResults& results, FileCases& cases);
+
 /// The finished cases of a study. `study` describes the task; a study can only be continued with
 /// the same task. `shard`: "1/4", or empty.
 std::string case_results_text(const nlohmann::ordered_json& study, const std::string& shard,
-                              const KnownResults& results);
+                              const FileCases& cases);
 
 /// Adds the cases of a file. Adds nothing if the file does not exist and `must_exist` is false.
 /// Throws Error(bad_file) if it is not a file of results or belongs to another study, and if a case
-/// has another result than the one that is known. Returns the shard of the file.
+/// has another result than the one that is known, or figures that no simulation gives. Returns the
+/// shard of the file.
 std::string add_case_results(const std::filesystem::path& file, const nlohmann::ordered_json& study,
-                             bool must_exist, KnownResults& results);
+                             bool must_exist, FileCases& cases);
 
 /// One row for each case: its number, outcome, figures, and all values that were drawn.
 std::string case_table(const UncertainTask& task, std::uint64_t seed, const KnownResults& results);

@@ -26,6 +26,7 @@
 #include "libraries.hpp"
 #include "names.hpp"
 #include "option_checks.hpp"
+#include "shader_cache.hpp"
 #include "signals.hpp"
 #include "terminal.hpp"
 
@@ -380,6 +381,7 @@ int parse_and_run(int argc, char** argv) {
 int run(int argc, char** argv) {
   fill_closed_streams();
   watch_for_signals();
+  spare_full_disk_of_shaders();
   // Libraries also allocate memory while they clean up after an error, where no exception may be
   // thrown.
   std::set_terminate([] {

@@ -1,7 +1,10 @@
 #include "push_results.hpp"
 
+#include <algorithm>
+
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
+#include "ayumi/base/largest_number.hpp"
 #include "ayumi/io/json/json_depth.hpp"
 
 namespace ayumi::app {
@@ -60,6 +63,23 @@ PushCase case_from(const nlohmann::json& json) {
   push.open_loop = limit_from(json.at("open_loop"));
   for (const auto& limit : json.at("limits")) push.limits.push_back(limit_from(limit));
   return push;
+}
+
+// Whether the numbers are those of a push of some robot. A file that was edited may have others.
+bool is_possible(const PushCase& push) {
+  const auto within = [](double value, double least) {
+    return value >= least && value <= kLargestNumber;
+  };
+  const auto is_limit = [&](const PushLimit& limit) {
+    return within(limit.impulse, 0) && limit.runs >= 0 &&
+           within(limit.moderate.foot_tilt, -kLargestNumber) &&
+           within(limit.moderate.recovery, -kLargestNumber) &&
+           within(limit.moderate.trunk_tilt, -kLargestNumber);
+  };
+  return within(push.phase.at, 0) && within(push.direction, -kLargestNumber) &&
+         within(push.bound, -kLargestNumber) && within(push.edge_bound, -kLargestNumber) &&
+         push.mass > 0 && within(push.mass, 0) && push.height > 0 && within(push.height, 0) &&
+         is_limit(push.open_loop) && std::all_of(push.limits.begin(), push.limits.end(), is_limit);
 }
 
 Json summary_json(const PushSummary& s) {
@@ -137,7 +157,9 @@ KnownCases read_results(const std::filesystem::path& file, const Json& study, si
       if (entry.at("limits").size() != study.at("controllers").size())
         refuse(
             "the number of results of a push differs from the number of controllers of the study");
-      known.at(entry.at("index")) = case_from(entry);
+      const PushCase push = case_from(entry);
+      if (!is_possible(push)) refuse("this file has a push with numbers that no push has");
+      known.at(entry.at("index")) = push;
     }
   } catch (const Json::exception&) {
     refuse("this file does not hold results of ayumi push");

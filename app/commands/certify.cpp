@@ -182,13 +182,13 @@ Json print_sources(const Context& context, const Study& study) {
 
 /// The cases of the merged files. Every case that the verdict needs must be present.
 KnownResults merged(const CertifyCommand& options, const Json& study) {
-  KnownResults results;
+  FileCases cases;
   std::vector<std::string> shards;
   for (const std::string& file : options.merge) {
-    const std::string theirs = add_case_results(file, study, true, results);
+    const std::string theirs = add_case_results(file, study, true, cases);
     if (!theirs.empty()) shards.push_back(theirs);
   }
-  results.resize(static_cast<size_t>(most_cases(options.certify)));
+  KnownResults results = first_cases(cases, most_cases(options.certify));
   const Certificate c = certificate(options.certify, results);
   const auto first = std::find(results.begin(), results.end(), std::nullopt);
   const bool complete = first == results.end();
@@ -323,19 +323,21 @@ void certify_pattern(Context& context, CertifyCommand& options) {
   // If two programs wrote the same file, each would lose cases that the other one has added.
   std::optional<FileLock> lock;
   if (!options.out.empty()) lock.emplace(options.out);
-  KnownResults results, known;
+  KnownResults results;
+  FileCases in_file;
   // Cases that an earlier command has run stay in the file, even if this command needs fewer.
-  const auto save = [&](KnownResults all) {
+  const auto save = [&](const KnownResults& all) {
     if (options.out.empty()) return;
-    all.resize(std::max(all.size(), known.size()));
-    for (size_t i = 0; i < known.size(); ++i)
-      if (!all[i]) all[i] = known[i];
-    write_file(options.out, case_results_text(asked, shard, all));
+    FileCases cases = in_file;
+    add_cases(all, cases);
+    write_file(options.out, case_results_text(asked, shard, cases));
   };
   if (!options.merge.empty()) {
     results = merged(options, asked);
   } else {
-    if (!options.out.empty() && !context.force) add_case_results(options.out, asked, false, known);
+    if (!options.out.empty() && !context.force)
+      add_case_results(options.out, asked, false, in_file);
+    const KnownResults known = first_cases(in_file, most_cases(options.certify));
     results = run_cases(task, options.certify, known, save, context.progress());
   }
   save(results);

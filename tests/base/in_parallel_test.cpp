@@ -39,6 +39,27 @@ TEST(InParallel, ThrowsTheErrorOfTheFirstJobThatFails) {
   }
 }
 
+// A job that asks whether it has to stop, and is before the one that failed, would hide the error.
+TEST(InParallel, AnErrorIsNotHiddenByAJobThatStopsBecauseOfIt) {
+  std::atomic<bool> stop = false, begun = false;
+  EXPECT_EQ(test::error_message(
+                [&] {
+                  in_parallel(2, 2, stop, [&](size_t i) {
+                    if (i == 1) {
+                      while (!begun) std::this_thread::yield();
+                      fail(ErrorCode::bad_file, "the disk is full");
+                    }
+                    begun = true;
+                    while (!stop) std::this_thread::yield();
+                    throw Interrupted();
+                  });
+                },
+                ErrorCode::bad_file),
+            "the disk is full");
+  stop = false;
+  EXPECT_THROW(in_parallel(2, 2, stop, [](size_t) { throw Interrupted(); }), Interrupted);
+}
+
 TEST(InParallel, RefusesANumberOfThreadsThatIsNone) {
   for (const int threads : {-5, 1025}) {
     std::atomic<bool> stop = false;

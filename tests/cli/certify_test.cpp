@@ -1,6 +1,8 @@
 // `ayumi certify` gives the same bytes for any number of threads and shards, continues where it was
 // stopped, and its cases can be simulated one by one.
 
+#include <sys/resource.h>
+
 #include <nlohmann/json.hpp>
 
 #include "tests/cli/program.hpp"
@@ -91,6 +93,38 @@ TEST(CertifyCommand, GoesOnAndRefusesOtherStudies) {
   EXPECT_EQ(other.exit_code, 3);
   EXPECT_NE(other.err.find("the results of another study ('seed' differs)"), std::string::npos)
       << other.err;
+}
+
+TEST(CertifyCommand, RefusesFiguresThatNoSimulationGives) {
+  const CertifyStudy study;
+  for (const auto& [place, value, why] :
+       {std::tuple(3, Json(1e308), "case 0 has the figure 1e+308, which no simulation gives"),
+        std::tuple(0, Json(-1), "a case has no number"),
+        std::tuple(0, Json(1e308), "a case has no number")}) {
+    Json edited = Json::parse(CertifyStudy::whole());
+    edited["cases"][0][place] = value;
+    write(study.folder / "cases.json", edited.dump());
+    const Output refused = study.certify({"-o", "cases.json"});
+    EXPECT_EQ(refused.exit_code, 3) << why;
+    EXPECT_NE(refused.err.find(why), std::string::npos) << refused.err;
+  }
+}
+
+// In an earlier version, one case with the largest number took 4.7 GB.
+TEST(CertifyCommand, ACaseWithALargeNumberTakesNoMemory) {
+  const CertifyStudy study;
+  Json edited = Json::parse(CertifyStudy::whole());
+  Json last = edited["cases"][0];
+  last[0] = 99'999'999;
+  edited["cases"].push_back(last);
+  write(study.folder / "cases.json", edited.dump());
+  struct rusage before {
+  }, after{};
+  ::getrusage(RUSAGE_CHILDREN, &before);
+  ASSERT_EQ(study.certify({"-o", "cases.json"}).exit_code, 1);
+  ::getrusage(RUSAGE_CHILDREN, &after);
+  EXPECT_LT(after.ru_maxrss, std::max(before.ru_maxrss, 1'000'000L)) << "kB";
+  EXPECT_EQ(Json::parse(contents(study.folder / "cases.json")), edited) << "the case stays";
 }
 
 // In an earlier version, the comparison with the program's own study descended into these results

@@ -293,7 +293,7 @@ TEST_F(LogExport, TablesOfAnotherLogAreRefused) {
     fs::remove_all(folder->path() / "forged");
     fs::copy(folder->path() / "run", folder->path() / "forged");
     write_run(folder->path() / "forged", forged);
-    for (const char* const format : {"hoap", "csv", "npz"}) {
+    for (const char* const format : {"hoap", "csv"}) {
       const Output output = ayumi({"forged", "--format", format, "-o", "f.out"});
       EXPECT_EQ(output.exit_code, 3) << what << output.out;
       EXPECT_NE(output.err.find(message), std::string::npos) << what << output.err;

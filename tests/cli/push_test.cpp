@@ -70,6 +70,21 @@ TEST(PushCommand, GoesOnFromItsResultsForAnyNumberOfThreads) {
       other.err.find("results.json: this file holds the results of a study with other settings"),
       std::string::npos)
       << other.err;
+
+  for (const auto& [place, value] :
+       {std::pair("/cases/0/mass_kg", -0.0), std::pair("/cases/0/bound_Ns", 1e308),
+        std::pair("/cases/0/direction_rad", 1e308),
+        std::pair("/cases/0/open_loop/impulse_Ns", -1.0),
+        std::pair("/cases/0/limits/0/impulse_Ns", 1e308)}) {
+    Json edited = Json::parse(whole);
+    edited[Json::json_pointer(place)] = value;
+    write(study.folder / "results.json", edited.dump());
+    const Output refused = study.run(study.command);
+    EXPECT_EQ(refused.exit_code, 3) << place << refused.out;
+    EXPECT_NE(refused.err.find("this file has a push with numbers that no push has"),
+              std::string::npos)
+        << place << refused.err;
+  }
 }
 
 // In an earlier version, the comparison with the program's own study descended into these results

@@ -297,7 +297,7 @@ TEST_F(Usage, AnOptionIsNoValue) {
                 option);
     EXPECT_FALSE(fs::exists(folder / option));
   }
-  refused({"check", pattern, "--set", "--json"}, "--set: '--json' is an option");
+  refused({"check", pattern, "--set", "--force"}, "--set: '--force' is an option");
   refused({"simulate", pattern, "--seed", "--quiet"}, "--seed: '--quiet' is an option");
   refused({"simulate", pattern, "-o", "-"},
           "--out: results are written to files only; for a file named '-', write ./-");
@@ -351,6 +351,25 @@ TEST_F(Usage, OutputThatCannotBeWrittenIsNoSuccess) {
   EXPECT_EQ(full.err, "ayumi: standard output cannot be written (No space left on device)\n");
   EXPECT_EQ(shell(">&-").exit_code, 3);
   EXPECT_EQ(shell("2>&- <&-").exit_code, 0);
+}
+
+// Mesa maps a file of its cache of shaders into memory, and the system ended the program when this
+// file did not fit on the disk.
+TEST_F(Usage, APictureIsDrawnWhereTheCacheFolderIsOnAFullDisk) {
+  const auto shell = [&](const std::string& script) {
+    return run_program({"-c", script}, folder.path(), "/bin/sh");
+  };
+  const std::string mount = "mkdir cache && mount -t tmpfs -o size=64k none cache";
+  if (shell("unshare -Urm sh -c '" + mount + "' && rmdir cache").exit_code != 0) {
+    fs::remove(folder / "cache");
+    GTEST_SKIP() << "a small file system cannot be mounted here";
+  }
+  const Output drawn =
+      shell("unshare -Urm sh -c '" + mount + " && XDG_CACHE_HOME=\"$PWD/cache\" exec \"" +
+            program_under_test() + "\" inspect hoap1 -q --picture p.png'");
+  EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
+  EXPECT_TRUE(fs::remove(folder / "p.png"));
+  fs::remove(folder / "cache");
 }
 
 }  // namespace

@@ -174,6 +174,8 @@ TEST(Table, BrokenTablesGetOneClearMessage) {
     std::string text, message;
   };
   const std::string head = "t[s],theta.a[rad]\n";
+  std::string long_rows;
+  for (int k = 0; k < 400; ++k) long_rows += std::to_string(10 * k) + ",1\n";
   for (const Case& each : std::vector<Case>{
            {"", "the file is empty"},
            {"# only a comment\n", "the head row is missing"},
@@ -203,7 +205,8 @@ TEST(Table, BrokenTablesGetOneClearMessage) {
            {"t[s],base.x[m],base.y[m],base.z[m],base.qw,base.qx,base.qy,base.qz\n0,0,0,0,1,1,0,0\n",
             "row 1: base.qw...qz has length 1.414"},
            {std::string("\x89PNG\r\n\x1a\n\0\0\0", 11), "is a binary file"},
-           {head + "0,1\n1e9,1\n", "but Ayumi reads at most 3600 s"},
+           {head + "0,1\n1e9,1\n", "the rows are 1e+09 s apart"},
+           {head + long_rows, "the table lasts 4000 s, but Ayumi reads at most 3600 s"},
            {"{\"columns\": [\"t[s]\"]}", "the key 'data' is missing"},
            {"{\"columns\": [\"t[s]\"], \"data\": []}", "/data: the table has no data row"},
            {"{\"columns\": [\"t[s]\"], \"data\": [[0], [1, 2]]}", "/data/1: the row has 2 values"},

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ayumi/base/bounds.hpp"
+#include "ayumi/base/error.hpp"
 
 namespace ayumi {
 
@@ -18,15 +19,17 @@ inline constexpr Bounds kThreadBounds = {0, 1024};
 
 /// Runs job(0..count-1) on threads. After an exception, no further jobs are started. Of several
 /// exceptions, that of the first job in order is thrown again. This exception is the same for any
-/// number of threads, because all jobs before that job were started. If the system grants no
-/// further thread, the existing threads do the work. Throws Error(usage) for a number of threads
-/// beyond kThreadBounds.
+/// number of threads, because all jobs before that job were started. Interrupted is only thrown if
+/// there is no other exception, because jobs throw it when another job has failed. If the system
+/// grants no further thread, the existing threads do the work. Throws Error(usage) for a number of
+/// threads beyond kThreadBounds.
 template <typename Job>
 void in_parallel(size_t count, int threads, std::atomic<bool>& stop, const Job& job) {
   require_within("the number of threads", threads, kThreadBounds);
   std::atomic<size_t> next = 0;
   std::exception_ptr error;
   size_t failed = count;
+  bool interrupted = false;
   std::mutex mutex;
   const auto work = [&] {
     while (!stop) {
@@ -34,6 +37,10 @@ void in_parallel(size_t count, int threads, std::atomic<bool>& stop, const Job& 
       if (i >= count) return;
       try {
         job(i);
+      } catch (const Interrupted&) {
+        const std::lock_guard lock(mutex);
+        interrupted = true;
+        stop = true;
       } catch (...) {
         const std::lock_guard lock(mutex);
         if (i < failed) {
@@ -54,6 +61,7 @@ void in_parallel(size_t count, int threads, std::atomic<bool>& stop, const Job& 
   work();
   for (std::thread& thread : pool) thread.join();
   if (error) std::rethrow_exception(error);
+  if (interrupted) throw Interrupted();
 }
 
 }  // namespace ayumi

@@ -341,8 +341,8 @@ bool is_file_of_run(const fs::path& folder, const fs::path& file) {
 std::optional<std::string> verify_run(const fs::path& folder, const std::string& keep) {
   const RunFile file(folder);
   const JsonNode root = file.root();
-  file.require_seal();
   file.require_listed(folder);
+  file.require_seal();
   std::optional<std::string> kept;
   for (const auto& [name, hash] : root.at("files").members()) {
     if (name == keep)
@@ -356,8 +356,8 @@ std::optional<std::string> verify_run(const fs::path& folder, const std::string&
 RunFolder read_run(const fs::path& folder, ComparedFiles compared) {
   const RunFile file(folder);
   const JsonNode root = file.root();
-  if (compared == ComparedFiles::all) file.require_seal();
   file.require_listed(folder);
+  if (compared == ComparedFiles::all) file.require_seal();
   RunFolder run;
   const JsonNode provenance = root.at("provenance");
   for_each_provenance(run.provenance, [&](const char* key, std::string& value) {

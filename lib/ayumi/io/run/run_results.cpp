@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "ayumi/base/file.hpp"
+#include "ayumi/base/largest_number.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/consistency.hpp"
 #include "ayumi/io/json/json_reader.hpp"
@@ -155,14 +156,15 @@ std::vector<PushThreshold> read_push_thresholds(const std::filesystem::path& fil
     if (limits.size() != controllers.size())
       push.at("limits").complain("one limit per controller of the study is needed");
     for (size_t c = 0; c < limits.size(); ++c)
-      thresholds.push_back({.phase = push.at("phase").string(),
-                            .controller = controllers[c],
-                            .at = push.at("at_s").number(),
-                            .direction = push.at("direction_rad").number(),
-                            .impulse = limits[c].at("impulse_Ns").number(),
-                            .open_loop = push.at("open_loop").at("impulse_Ns").number(),
-                            .bound = push.at("bound_Ns").number(),
-                            .capped = limits[c].at("capped").boolean()});
+      thresholds.push_back(
+          {.phase = push.at("phase").string(),
+           .controller = controllers[c],
+           .at = push.at("at_s").number_within(0, kLargestNumber),
+           .direction = push.at("direction_rad").number_within(-kLargestNumber, kLargestNumber),
+           .impulse = limits[c].at("impulse_Ns").number_within(0, kLargestNumber),
+           .open_loop = push.at("open_loop").at("impulse_Ns").number_within(0, kLargestNumber),
+           .bound = push.at("bound_Ns").number_within(-kLargestNumber, kLargestNumber),
+           .capped = limits[c].at("capped").boolean()});
   }
   return thresholds;
 }

@@ -175,10 +175,6 @@ double tick_of(const NumberTable& table, const TableLayout& layout, const std::s
     const double rate = std::round(1 / dt);
     if (std::abs(1 / dt - rate) < 1e-6 * rate) dt = 1 / rate;
   }
-  if (rows > 1 && !(dt >= kShortestServoPeriod && dt <= kLongestServoPeriod))
-    stop(file, "the rows are " + text::brief(dt) + " s apart, but " +
-                   text::brief(kShortestServoPeriod) + " to " + text::brief(kLongestServoPeriod) +
-                   " s are possible, as for the period of a servo");
   for (Eigen::Index k = 0; k < rows; ++k) {
     if (k > 0 && t[k] <= t[k - 1])
       stop(file, "row " + std::to_string(k + 1) + ": time " + text::exact(t[k]) +
@@ -188,6 +184,10 @@ double tick_of(const NumberTable& table, const TableLayout& layout, const std::s
                      text::exact(static_cast<double>(k) * dt) +
                      " s is expected, because the rows start at 0 s and are evenly spaced");
   }
+  if (rows > 1 && !(dt >= kShortestServoPeriod && dt <= kLongestServoPeriod))
+    stop(file, "the rows are " + text::brief(dt) + " s apart, but " +
+                   text::brief(kShortestServoPeriod) + " to " + text::brief(kLongestServoPeriod) +
+                   " s are possible, as for the period of a servo");
   return dt;
 }
 

@@ -1,0 +1,38 @@
+#include "shader_cache.hpp"
+
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+namespace ayumi::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// Room that the cache needs [bytes]. Measured: Mesa 22.3 maps a file of 1.3 MB, and the shaders of
+// Ayumi take 0.2 MB. Chosen: ten times as much, because other programs write at the same time.
+constexpr std::uintmax_t kLeastRoom = 16'000'000;
+
+// The folder in which Mesa makes its cache; empty if it makes none.
+fs::path cache_folder() {
+  for (const char* const name : {"MESA_SHADER_CACHE_DIR", "XDG_CACHE_HOME"})
+    if (const char* const folder = std::getenv(name); folder && *folder) return folder;
+  const char* const home = std::getenv("HOME");
+  return home && *home ? fs::path(home) : fs::path();
+}
+
+}  // namespace
+
+void spare_full_disk_of_shaders() {
+  fs::path folder = cache_folder();
+  std::error_code error;
+  while (!folder.empty() && folder != folder.parent_path() && !fs::exists(folder, error))
+    folder = folder.parent_path();
+  if (folder.empty()) return;
+  const fs::space_info room = fs::space(folder, error);
+  if (!error && room.available < kLeastRoom) ::setenv("MESA_SHADER_CACHE_DISABLE", "true", 0);
+}
+
+}  // namespace ayumi::app
