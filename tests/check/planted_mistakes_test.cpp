@@ -772,6 +772,22 @@ TEST(PlantedMistakes, AllThatIsNamedForAHopIsEnough) {
   EXPECT_TRUE(is_consistent(pattern, options)) << found;
 }
 
+// Each value gets one advice, although a second change of the same time or height would leave fewer
+// errors, and every change but the first says which other changes it needs.
+TEST(PlantedMistakes, AValueIsChangedOnlyOnce) {
+  for (const double stoop : {1.2, 1.1})
+    for (const double height : {0.235, 0.23}) {
+      const Pattern pattern = hop_with(
+          {{0.5, 0.245}, {stoop, 0.2}, {1.5, height}, {1.65, height}, {1.85, 0.2}, {2.8, 0.245}});
+      std::set<std::string> values;
+      for (const Mistake& mistake : likely_mistakes(small(), pattern, strong_options(pattern))) {
+        const std::string text = mistake.text();
+        EXPECT_TRUE(values.insert(text.substr(0, text.find(" is ") + 4)).second) << text;
+        EXPECT_EQ(mistake.further, text.find("named first for /") != std::string::npos) << text;
+      }
+    }
+}
+
 // The stoop is too low. The range of its height begins with the smaller value, although the larger
 // one is nearer to the height that the COG would have without the key.
 TEST(PlantedMistakes, ARangeBeginsWithItsSmallerEnd) {

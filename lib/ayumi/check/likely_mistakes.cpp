@@ -478,7 +478,10 @@ std::vector<Mistake> likely_mistakes(const RobotModel& model, const Pattern& pat
   const Explanations search = find_explanations(model, pattern, options, progress);
   std::vector<Mistake> mistakes;
   for (const Explanation& e : search.found)
-    mistakes.push_back({e.place, e.written + "; " + e.instead, e.enough});
+    mistakes.push_back({.place = e.place,
+                        .words = e.written + "; " + e.instead,
+                        .explains_all = e.enough,
+                        .further = e.further});
   const std::vector<Mistake> impossible = impossible_values(model, pattern);
   if (mistakes.empty()) mistakes = impossible;
   // If it is known why a value is impossible, the reason comes first, and then the value that is
@@ -513,7 +516,11 @@ Error with_mistakes(const Error& error, const Pattern& pattern,
     return {error.code(), error.what() + more, error.place(), error.words() + more};
   }
   const bool in_file = !pattern.file.empty() && error.place().file == pattern.file;
-  const std::string words = "likely cause: " + text::join(texts, "; or ") +
+  std::string causes;
+  for (const Mistake& mistake : mistakes)
+    if (mistake.is_cause)
+      causes += (causes.empty() ? "" : mistake.further ? "; and " : "; or ") + mistake.text();
+  const std::string words = "likely cause: " + causes +
                             "; the first error is: " + (in_file ? error.words() : error.what());
   SourcePlace place = error.place();
   // What should be changed is where the first cause is.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <sstream>
 #include <tuple>
 
 #include "ayumi/base/counted.hpp"
@@ -460,6 +461,27 @@ std::string words_at_period(const TrialOutcome& before, const TrialOutcome& afte
          (after.errors == 1 ? "remains" : "remain");
 }
 
+// The place and the words before the first number: what a change concerns, whatever its value.
+std::string value_of(const Explanation& e) {
+  std::string words = e.place + ":";
+  std::istringstream each(e.written);
+  for (std::string word; each >> word;) {
+    if (word.find_first_of("0123456789") <= 1) break;  // a number, perhaps with a sign
+    words += " " + word;
+  }
+  return words;
+}
+
+// The places whose changes are also needed.
+std::string together_with(const std::vector<Explanation>& changes) {
+  std::vector<std::string> places;
+  for (const Explanation& change : changes)
+    if (std::find(places.begin(), places.end(), change.place) == places.end())
+      places.push_back(change.place);
+  return std::string(" (together with the ") + (changes.size() > 1 ? "changes" : "change") +
+         " named first for " + text::join(places, " and ") + ")";
+}
+
 // "with t = 1 s, ": the beginning of a sentence.
 std::string before_result(const std::string& instead) {
   return instead + (instead.ends_with(',') ? " " : ", ");
@@ -474,6 +496,7 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
   if (pattern.table || pattern.phases.empty() || !model.has_soles()) return result;
   Trials trials(model, pattern, options, progress, most_trials);
   Pattern current = pattern;
+  std::vector<Explanation> changed;  // the changes of the previous rounds
   TrialOutcome found = trials.of(current);
   if (found.good()) {  // the errors show only at the servo's period
     trials.make_exact();
@@ -496,14 +519,19 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
           best = search->best();
         }
       }
+      // A second change of the same value would contradict the first one.
+      std::vector<Candidate> again;
       std::erase_if(best, [&](const Candidate& c) {
-        const auto is_here = [&](const Explanation& e) {
-          return e.place == c.hypothesis.says.place;
-        };
-        return is_repeated(pattern, c.hypothesis.says.place) &&
-               std::any_of(result.found.begin(), result.found.end(), is_here);
+        const Explanation& says = c.hypothesis.says;
+        const auto is_same = [&](const Explanation& e) { return value_of(e) == value_of(says); };
+        const auto is_here = [&](const Explanation& e) { return e.place == says.place; };
+        const bool is_again = std::any_of(changed.begin(), changed.end(), is_same) ||
+                              (is_repeated(pattern, says.place) &&
+                               std::any_of(result.found.begin(), result.found.end(), is_here));
+        if (is_again) again.push_back(c);
+        return is_again;
       });
-      if (best.empty()) break;
+      if (best.empty() && again.empty()) break;
       std::vector<Candidate> unsampled;
       for (Candidate& c : best) {
         // A quick trial does not see all that is wrong at the servo's period.
@@ -518,7 +546,8 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
             (looked_closer ? words_at_period(found, c.outcome) : result_words(found, c.outcome));
         c.hypothesis.says.enough = c.outcome.good();
         // The changes of the previous rounds are also needed.
-        if (round > 0) c.hypothesis.says.instead += " (together with the change named before)";
+        c.hypothesis.says.further = round > 0;
+        if (round > 0) c.hypothesis.says.instead += together_with(changed);
         // A mistake that was named together with another change is enough only after that change.
         std::erase_if(result.found, [&](const Explanation& e) {
           return e.place == c.hypothesis.says.place && e.written == c.hypothesis.says.written;
@@ -527,11 +556,14 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
         possible.push_back(std::move(c));
       }
       if (trials.ended()) break;
-      search->drop(unsampled);  // the next best ones may be possible
+      // The next best ones may be possible.
+      unsampled.insert(unsampled.end(), again.begin(), again.end());
+      search->drop(unsampled);
     }
     if (possible.empty()) break;
     Pattern mended = current;
     possible.front().hypothesis.mend(mended);
+    changed.push_back(possible.front().hypothesis.says);
     const TrialOutcome left = possible.front().outcome;
     if (left.table_alone) trials.make_exact();
     current = std::move(mended);
