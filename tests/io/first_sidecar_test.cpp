@@ -387,6 +387,18 @@ TEST(FirstSidecar, OtherUnitsAreNamed) {
     EXPECT_NE(std::string(error.what()).find("heavier than a cube of lead"), std::string::npos)
         << error.what();
   }
+  UrdfBiped large;
+  large.size = 1000;
+  try {
+    first_sidecar(folder.write("millimetres.urdf", large.text()).string(), folder.path());
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("millimetres.urdf: the robot weighs"),
+              std::string::npos)
+        << error.what();
+    EXPECT_NE(std::string(error.what()).find("divide the lengths by 1000"), std::string::npos)
+        << error.what();
+  }
   const std::string degrees =
       std::regex_replace(text, std::regex("upper=\"[0-9.]+\""), "upper=\"60\"");
   EXPECT_TRUE(has_item(first_sidecar(folder.write("degrees.urdf", degrees).string(), folder.path()),

@@ -501,10 +501,10 @@ std::string inertias_text(const RobotDescription& robot, const std::vector<std::
   return text + "  },\n";
 }
 
-// Throws if the robot is heavier than lead, because nothing that is guessed from such masses is of
-// use.
+// Throws if the robot is heavier than lead or lighter than helium, because nothing that is guessed
+// from such masses or lengths is of use.
 void require_weight(const RobotModel& model, const std::string& file) {
-  constexpr double kLead = 11340;  // density [kg/m^3]
+  constexpr double kLead = 11340, kHelium = 0.18;  // densities [kg/m^3]
   RobotState state = model.rest_state();
   state.theta.setZero();
   RobotData data(model);
@@ -518,6 +518,12 @@ void require_weight(const RobotModel& model, const std::string& file) {
              text::brief(size) +
              " m apart, so it is heavier than a cube of lead of this size; masses must be in kg "
              "and lengths in m: divide the masses by 1000 if they are in grams");
+  if (model.mass() < kHelium * size * size * size)
+    fail(ErrorCode::bad_file, {file},
+         "the robot weighs " + text::brief(model.mass()) + " kg and its joints are up to " +
+             text::brief(size) +
+             " m apart, so it is lighter than a balloon of helium of this size; masses must be in "
+             "kg and lengths in m: divide the lengths by 1000 if they are in millimetres");
 }
 
 std::vector<std::string> to_do_list(const RobotModel& model, const RobotGuess& guess) {
