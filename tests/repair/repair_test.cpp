@@ -19,6 +19,7 @@
 #include "tests/support/error_message.hpp"
 #include "tests/support/limited_biped.hpp"
 #include "tests/support/random_robot.hpp"
+#include "tests/support/robot_motions.hpp"
 #include "tests/support/ten_faults.hpp"
 #include "tests/support/walk.hpp"
 #include "tests/support/weighted_change.hpp"
@@ -429,6 +430,25 @@ TEST(FromScratch, MakesAMotionOfThePlanAlone) {
     if (pattern.phases.size() > 1) continue;
     EXPECT_NEAR(made.repair.series.samples[1200].cog.z(), 0.88 * home, 2e-3);
   }
+}
+
+// Its feet take up the COG's speed in 40 ms as those of a small robot do, and then the targets of
+// the knees change too fast; a longer time helps.
+TEST(FromScratch, AJumpOfATallRobot) {
+  const RobotModel& tall = bundled_robot("humanoid30");
+  Pattern pattern;
+  pattern.robot = "humanoid30";
+  pattern.phases.resize(3);
+  pattern.phases[0].until = 1.4;
+  pattern.phases[1].until = 1.54;
+  pattern.phases[1].support = Support::none;
+  pattern.phases[2].until = 2.94;
+  pattern.keyframes = {cog_key(0, {}, {}, 0.582),     cog_key(1.265, {}, {}, 0.528),
+                       cog_key(1.4, {}, {}, 0.57),    cog_key(1.54, {}, {}, 0.57),
+                       cog_key(1.675, {}, {}, 0.528), cog_key(2.94, {}, {}, 0.582)};
+  const GeneratedMotion made = generate(tall, pattern, sample_plan(tall, pattern), {});
+  expect_repaired(made.repair);
+  EXPECT_TRUE(made.repair.check.consistent);
 }
 
 // The COG has a key at the end alone. The straight way to it leads the ZMP out of the support in

@@ -40,11 +40,6 @@ Isometry3d on_ground(const Vector3d& position, double yaw) {
   return pose;
 }
 
-// Time over which the feet take up the COG's speed in a flight [s]. Chosen: shorter than half of a
-// flight, longer than a servo's delay. With half of the value, the case "jump" is inconsistent;
-// with twice, the moment in flight changes from 0.0353 to 0.00372 N m.
-constexpr double kFlightRamp = 0.04;
-
 // Rises from 0 to 1. The first three derivatives are zero at both ends.
 double smooth_step(double u) {
   u = std::clamp(u, 0.0, 1.0);
@@ -148,8 +143,8 @@ std::array<Isometry3d, 2> start_feet(const RobotModel& model, const Pattern& pat
   return feet;
 }
 
-FootPlan::FootPlan(const RobotModel& model, const Pattern& pattern)
-    : phases_(pattern.phases), start_(start_feet(model, pattern)) {
+FootPlan::FootPlan(const RobotModel& model, const Pattern& pattern, double flight_ramp)
+    : phases_(pattern.phases), flight_ramp_(flight_ramp), start_(start_feet(model, pattern)) {
   for (const Side side : kSides) {
     const Eigen::Vector2d& c = model.sole(side).center;
     center_[index(side)] = {c.x(), c.y(), 0};
@@ -299,7 +294,7 @@ double FootPlan::flight_lift(Side side, double t) const {
     for (const double key : keyed->times)
       if (key > from + kInstant && key < phases_[i].until - kInstant) return 0;
   const double after = std::clamp(t - from, 0.0, length), left = length - after;
-  const double ramp = std::min(kFlightRamp, length / 2);
+  const double ramp = std::min(flight_ramp_, length / 2);
   return 0.5 * kGravity * after * left * smooth_step(after / ramp) * smooth_step(left / ramp);
 }
 

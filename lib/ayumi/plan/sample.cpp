@@ -41,7 +41,7 @@ struct Solving {
 CommandSeries sample_posture(const RobotModel& model, const Pattern& pattern,
                              const SampleOptions& options, const Progress& progress,
                              const Solving& solving, double forgiven) {
-  const FootPlan feet(model, pattern);
+  const FootPlan feet(model, pattern, solving.lead.flight_ramp);
   const InverseKinematics ik(model, default_posture(model, pattern));
   std::vector<bool> solved(model.dof_count());
   for (int dof = 0; dof < model.dof_count(); ++dof) solved[dof] = ik.solves(dof);

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "ayumi/math/track.hpp"
+#include "ayumi/plan/foot_plan.hpp"
 #include "ayumi/plan/sample.hpp"
 
 namespace ayumi {
@@ -21,6 +22,8 @@ struct PlanLead {
   PlannedCog cog = PlannedCog::keys;
   /// The ZMP in the world [m], in place of the ZMP of the phases and of keys.
   std::optional<std::array<Track, 3>> zmp = {};
+  /// Time over which the feet take up the COG's speed in a flight [s].
+  double flight_ramp = kFlightRamp;
 };
 
 /// The motion that inverse kinematics finds for the contacts, the planned feet and the planned COG

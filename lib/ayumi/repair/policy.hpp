@@ -493,6 +493,11 @@ namespace generation {
 /// last height a walk is a crouch that an author would ask for. Test:
 /// FromScratch.LegsThatAreTooShortForThePlanAreHelped.
 inline constexpr double kHeights[] = {0.96, 0.92, 0.88, 0.84, 0.8};
+/// Times over which the feet take up the COG's speed in a flight, in place of kFlightRamp, in the
+/// order in which they are tried [s]. Reason: a large robot flies longer, and a leg that is nearly
+/// straight needs time to bend for its landing, because the servo targets lead. Test:
+/// FromScratch.AJumpOfATallRobot.
+inline constexpr double kFlightRamps[] = {0.055, 0.07, 0.09};
 /// Times over which the ZMP of least sway changes smoothly, in the order in which they are tried
 /// [s]. Measured: with 0.02 s, Unitree H1 follows the ZMP of steps of 0.38 s; with a shorter time,
 /// the COG sways less, but the full model misses the sudden ZMP by several millimetres. Test:

@@ -66,6 +66,11 @@ bool has_only_goals(const Pattern& pattern, double dt) {
   return !rows && std::none_of(pattern.keyframes.begin(), pattern.keyframes.end(), on_the_way);
 }
 
+bool flies(const Pattern& pattern) {
+  return std::any_of(pattern.phases.begin(), pattern.phases.end(),
+                     [](const Phase& phase) { return phase.support == Support::none; });
+}
+
 // The starts of a plan, and what they are judged by.
 class PlanStarts {
  public:
@@ -91,7 +96,8 @@ class PlanStarts {
 
   // The start with the smallest violation; `best` if none is better.
   PlanStart better_than(PlanStart best, const PlanLead& lead) const {
-    const bool as_planned = lead.cog == PlannedCog::keys && !lead.zmp;
+    const bool as_planned =
+        lead.cog == PlannedCog::keys && !lead.zmp && lead.flight_ramp == kFlightRamp;
     for (const double share : shares_) {
       if (best.violation == 0) break;
       if (share == 1 && as_planned) continue;  // this is the plan itself
@@ -170,6 +176,9 @@ GeneratedMotion generate(const RobotModel& model, const Pattern& pattern, const 
   };
   PlanStart start = {.series = plan, .violation = starts.violation_of(plan)};
   start = starts.better_than(std::move(start), {});
+  if (flies(pattern))
+    for (const double ramp : policy::generation::kFlightRamps)
+      start = starts.better_than(std::move(start), {.flight_ramp = ramp});
   const bool may_lead = has_key(pattern, &Keyframe::cog_x) || has_key(pattern, &Keyframe::cog_y);
   const bool only_goals = has_only_goals(pattern, plan.dt);
   if (may_lead && only_goals)
