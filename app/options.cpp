@@ -85,13 +85,11 @@ Option* Command::keep(CLI::Option* option) { return &options_.emplace_back(optio
 
 namespace {
 
-// Says that a word that stands where a value is needed is an option, so that the value is missing:
-// CLI11 takes such a word as the value. A negative number is no option.
-std::string complaint_of_option(const std::string& word, bool is_text) {
-  const bool is_letter = word.size() == 2 && std::isalpha(static_cast<unsigned char>(word[1])) != 0;
-  if (!word.starts_with("--") && !(is_text && word.starts_with("-") && is_letter)) return "";
-  return "'" + word + "' is an option, but a value is needed" +
-         (is_text ? "; for a file of this name, write ./" + word : "");
+// Whether a word is the name of an option of the command or of the program.
+bool names_option(const CLI::App* command, const std::string& word) {
+  for (; command != nullptr; command = command->get_parent())
+    if (command->get_option_no_throw(word.substr(0, word.find('='))) != nullptr) return true;
+  return false;
 }
 
 // Says that a result is not written to the standard output.
@@ -101,9 +99,18 @@ std::string complaint_of_dash(const std::string& word) {
 
 }  // namespace
 
-Option* Command::keep_value(CLI::Option* option, bool is_text) {
+Option* Command::keep_value(CLI::Option* option, bool is_output) {
+  if (option->get_positional()) return keep(option);
+  // CLI11 takes the next word as the value, even if it is an option.
   option->check(CLI::Validator(
-      [is_text](std::string& word) { return complaint_of_option(word, is_text); }, "", ""));
+      [is_output, command = &app_](std::string& word) -> std::string {
+        const bool is_option = word.size() > 1 && word[0] == '-' && names_option(command, word);
+        if (!is_option && !(is_output && word.starts_with("--"))) return "";
+        return (is_option ? "'" + word + "' is an option, but a value is needed"
+                          : "'" + word + "' looks like an option") +
+               std::string(is_output ? "; for a file of this name, write ./" + word : "");
+      },
+      "", ""));
   return keep(option);
 }
 
@@ -114,40 +121,40 @@ Command* Command::add_subcommand(std::string name, std::string description) {
 Option* Command::add_option(std::string name, std::string& value, std::string description) {
   const bool is_output = name.starts_with("-o,");
   Option* const option =
-      keep_value(app_.add_option(std::move(name), value, std::move(description)), true);
+      keep_value(app_.add_option(std::move(name), value, std::move(description)), is_output);
   if (is_output) option->check({complaint_of_dash, "", ""});
   return option;
 }
 
 Option* Command::add_option(std::string name, double& value, std::string description) {
-  return keep_value(app_.add_option(std::move(name), value, std::move(description)), false);
+  return keep_value(app_.add_option(std::move(name), value, std::move(description)));
 }
 
 Option* Command::add_option(std::string name, int& value, std::string description) {
-  return keep_value(app_.add_option(std::move(name), value, std::move(description)), false);
+  return keep_value(app_.add_option(std::move(name), value, std::move(description)));
 }
 
 Option* Command::add_option(std::string name, std::int64_t& value, std::string description) {
-  return keep_value(app_.add_option(std::move(name), value, std::move(description)), false);
+  return keep_value(app_.add_option(std::move(name), value, std::move(description)));
 }
 
 Option* Command::add_option(std::string name, std::uint64_t& value, std::string description) {
-  return keep_value(app_.add_option(std::move(name), value, std::move(description)), false);
+  return keep_value(app_.add_option(std::move(name), value, std::move(description)));
 }
 
 Option* Command::add_option(std::string name, std::optional<double>& value,
                             std::string description) {
-  return keep_value(app_.add_option(std::move(name), value, std::move(description)), false);
+  return keep_value(app_.add_option(std::move(name), value, std::move(description)));
 }
 
 Option* Command::add_option(std::string name, std::vector<std::string>& values,
                             std::string description) {
-  return keep_value(app_.add_option(std::move(name), values, std::move(description)), true);
+  return keep_value(app_.add_option(std::move(name), values, std::move(description)));
 }
 
 Option* Command::add_option(std::string name, std::vector<double>& values,
                             std::string description) {
-  return keep_value(app_.add_option(std::move(name), values, std::move(description)), false);
+  return keep_value(app_.add_option(std::move(name), values, std::move(description)));
 }
 
 Option* Command::add_flag(std::string name, bool& value, std::string description) {

@@ -103,8 +103,9 @@ class Command {
 
  private:
   Option* keep(CLI::Option* option);
-  /// Keeps an option or argument with a value, which must not be the name of an option.
-  Option* keep_value(CLI::Option* option, bool is_text);
+  /// Keeps an option or argument with a value. The value of an option must not be the name of an
+  /// option; that of an option for results must not begin with "--".
+  Option* keep_value(CLI::Option* option, bool is_output = false);
   CLI::App& app_;
   std::list<Option> options_;
   std::list<Command> subcommands_;

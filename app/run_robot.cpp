@@ -3,7 +3,6 @@
 #include <filesystem>
 
 #include "ayumi/base/error.hpp"
-#include "ayumi/base/text.hpp"
 #include "ayumi/io/run/log_robot.hpp"
 
 namespace ayumi::app {
@@ -30,12 +29,6 @@ void require_log_of(const RobotModel& model, const std::string& chosen, const Si
          "the robot '" + model.name() +
              "' has changed since the run was made; make the run again, or give --robot to use the "
              "present robot");
-  const double period = model.description().servo_period;
-  if (!made_with.empty() && log.dt != period)
-    fail(ErrorCode::bad_file, {source},
-         "the log has a row every " + text::brief(1000 * log.dt) +
-             " ms, but the servo period of '" + model.name() + "' is " +
-             text::brief(1000 * period) + " ms; the log has changed; run the pattern again");
   require_robot_of(model, log, source);
 }
 

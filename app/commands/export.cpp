@@ -246,6 +246,9 @@ void require_table_of_log(const ReferenceTrajectory& table, const ReferenceTraje
   }
 }
 
+constexpr const char* kTable = "reference.csv";
+constexpr const char* kPushedTable = "reference_pushed.csv";
+
 struct CautiousTable {
   ReferenceTrajectory reference;
   TableCaution caution;
@@ -283,9 +286,8 @@ CautiousTable table_of_run(const ExportOptions& options, const RunFolder& run,
   const bool as_wanted = table->servo.content == wanted.content &&
                          table->servo.delay == wanted.delay && table->servo.lag == wanted.lag;
   if (!as_wanted) return {made(log), caution};
-  require_table_of_log(
-      *table, made(log),
-      (fs::path(options.input) / (pushed ? "reference_pushed.csv" : "reference.csv")).string());
+  require_table_of_log(*table, made(log),
+                       (fs::path(options.input) / (pushed ? kPushedTable : kTable)).string());
   return {*table, caution};
 }
 
@@ -316,29 +318,42 @@ bool is_reference_table(const std::string& path) {
                                                        "\"ayumi.reference/") != std::string::npos);
 }
 
-// The text of a table. If it belongs to a run, the whole run must be as it was written.
-std::string text_of_table(const fs::path& table) {
-  const fs::path folder = table.has_parent_path() ? table.parent_path() : fs::path(".");
-  const std::string name = table.filename().string();
-  if (is_run_folder(folder)) {
-    const std::vector<std::string> names = run_file_names(folder);
-    if (std::find(names.begin(), names.end(), name) != names.end())
-      if (auto text = verify_run(folder, name)) return *std::move(text);
-  }
-  return read_file(table);
+// Throws Error(bad_file) unless a table in a run folder is one of the run's own, and the run is as
+// it was written. Other files in such a folder are the user's.
+void require_table_of_run(const ReferenceTrajectory& table, ExportOptions options,
+                          const Context& context) {
+  const fs::path path = options.input;
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  const bool pushed = path.filename() == kPushedTable;
+  if ((!pushed && path.filename() != kTable) || !is_run_folder(folder)) return;
+  const RunFolder run = read_run(folder, ComparedFiles::all);
+  if (pushed ? !run.pushed : !run.reference) return;  // a light run beside a table of the user
+  options.pushed = pushed;
+  options.log.clear();
+  const SimulationLog& log = log_of_run(run, folder, log_of_table(options, run));
+  const RobotModel model = robot_of_log(context, options.robot, log, folder.string());
+  const std::string& content = table.servo.content;
+  const std::string& profile =
+      table.servo.profile.empty() ? log.provenance.profile : table.servo.profile;
+  const ReferenceTrajectory of_log = table_of_log(
+      model, profile, log, content.empty() ? ServoContent::lead : servo_content(content));
+  // A robot with other servos (--robot) would have got another table.
+  if (!options.robot.empty() && of_log.servo.lag != table.servo.lag) return;
+  require_table_of_log(table, of_log, options.input);
 }
 
 Source source_of(const ExportOptions& options, const Context& context) {
   if (fs::is_directory(options.input)) return source_of_run(options, context);
   refuse_log_file(options.input);
   if (!is_reference_table(options.input)) return source_of_pattern(options, context);
-  const std::string table = text_of_table(options.input);
+  const std::string text = read_file(options.input);
   if (!options.servo.empty())
     fail(ErrorCode::usage, {options.input},
          "--servo cannot change the content of a table that exists; to "
          "choose the content, export the pattern or the run");
-  return source_of_table(options, context, parse_reference(table, options.input),
-                         parse_table_caution(table, options.input));
+  const ReferenceTrajectory table = parse_reference(text, options.input);
+  require_table_of_run(table, options, context);
+  return source_of_table(options, context, table, parse_table_caution(text, options.input));
 }
 
 constexpr double kGltfRate = 60;  // rate of an animation's keys [Hz]; viewers interpolate linearly

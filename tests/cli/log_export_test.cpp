@@ -307,7 +307,7 @@ TEST_F(LogExport, TablesOfAnotherLogAreRefused) {
     };
   };
   expect_refused_run("log at half the rate", with_dt(0.002),
-                     "the log has a row every 2 ms, but the servo period of 'hoap1' is 1 ms");
+                     "the table has a row every 1 ms, but the log of the run has one every 2 ms");
   expect_refused_run(
       "bent knee", [](RunFolder& run) { run.reference->rows[100].theta[10] += 0.5; },
       "forged/reference.csv: row 101 of the table is not that of the log of the run");

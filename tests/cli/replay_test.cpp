@@ -87,6 +87,17 @@ TEST_F(Replay, WhatWasExportedStands) {
 }
 
 // A jump is clamped to 57 counts per millisecond; with a bow that is too deep, the robot falls.
+// The motor boards have a tick of 1 ms, whatever the servo period of the robot is. In an earlier
+// version, the log of such a replay was refused.
+TEST_F(Replay, TheRunOfASlowRobotIsRead) {
+  write(folder / "slow.json",
+        R"({"format": "ayumi.robot/1", "base": "hoap1", "name": "slow", "servo_period": 0.008})");
+  export_bow("csv", "t.csv");
+  ASSERT_EQ(ayumi({"replay", "t.csv", "--robot", "slow.json", "-o", "r", "-q"}).exit_code, 0);
+  const Output out = ayumi({"export", "r", "--format", "csv", "-o", "again.csv", "-q"});
+  EXPECT_EQ(out.exit_code, 0) << out.err << out.out;
+}
+
 TEST_F(Replay, JumpsAreClampedAndFallsAreFound) {
   const int home[20] = {0, 0, 3607,  9107,  -5500, 0, 18810,  -2090, 0, 5225,
                         0, 0, -3607, -9107, 5500,  0, -18810, 2090,  0, -5225};

@@ -299,6 +299,12 @@ TEST_F(Usage, AnOptionIsNoValue) {
   }
   refused({"check", pattern, "--set", "--force"}, "--set: '--force' is an option");
   refused({"simulate", pattern, "--seed", "--quiet"}, "--seed: '--quiet' is an option");
+  // Other words may begin with dashes.
+  refused({"export", pattern, "-o", "--draft"},
+          "--out: '--draft' looks like an option; for a file of this name, write ./--draft");
+  fs::copy_file(pattern, folder / "--walk.json");
+  EXPECT_EQ(ayumi({"check", "-q", "--", "--walk.json"}).exit_code, 0);
+  EXPECT_EQ(ayumi({"plot", pattern, "--title", "--draft--", "-o", "p.svg", "-q"}).exit_code, 0);
   refused({"simulate", pattern, "-o", "-"},
           "--out: results are written to files only; for a file named '-', write ./-");
 }

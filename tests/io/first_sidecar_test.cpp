@@ -477,8 +477,8 @@ TEST(FirstSidecar, PlaceholdersOfInertiasBecomeThoseOfTheShapes) {
   EXPECT_NE(sidecar.to_do.back().find("Replace the inertia of 2 links (l_thigh, r_foot)"),
             std::string::npos)
       << sidecar.to_do.back();
-  // The gains are those for the true inertias. With 1 kg m^2 in a thigh, the damping of the hip would
-  // be many times larger, and the targets would lead the motion by half a second.
+  // The gains are those for the true inertias. With 1 kg m^2 in a thigh, the damping of the hip
+  // would be many times larger, and the targets would lead the motion by half a second.
   const RobotModel guessed(load_robot_description((folder.path() / "good.urdf").string()));
   for (const auto& [joint, servo] : guessed.description().servos)
     EXPECT_NEAR(mended.description().servos.at(joint).kd, servo.kd, 0.02 * servo.kd) << joint;

@@ -509,6 +509,22 @@ TEST(Mjcf, TheLineOfTheFileIsNamed) {
   EXPECT_EQ(actuator.find("line"), std::string::npos) << actuator;
 }
 
+// In an earlier version, the line of the included file stood behind the name of the other one.
+TEST(Mjcf, NoLineOfAnIncludedFileIsNamedForTheFileThatIncludesIt) {
+  if (!has_mujoco()) GTEST_SKIP() << "built without MuJoCo";
+  const TemporaryFolder folder;
+  folder.write("part.xml",
+               "<mujoco>\n <worldbody>\n  <body name='a'><freejoint/>\n   <geom type='sphera' "
+               "size='0.1'/>\n  </body>\n </worldbody>\n</mujoco>\n");
+  try {
+    parse_robot("<mujoco>\n <include file='part.xml'/>\n <worldbody/>\n\n\n</mujoco>\n",
+                folder.path() / "m.xml", {});
+    FAIL() << "no error";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("m.xml: MuJoCo: "), std::string::npos) << e.what();
+  }
+}
+
 // Old Mac programs end lines with a carriage return alone, and editors of Windows put a mark before
 // the text.
 TEST(RobotFormats, LineEndsAndMarksOfOtherSystems) {

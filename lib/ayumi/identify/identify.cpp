@@ -582,8 +582,9 @@ Identification identify(const RobotModel& model, const RecordedMotion& motion,
     require_within("the longest lag of a servo", options.longest_lag, IdentifyOptions::kLongestLag);
   require_within("the number of threads", options.threads, kThreadBounds);
   const double longest = options.longest_lag > 0 ? options.longest_lag : longest_lag(model);
-  require_within("the rate of the command", 1 / motion.command.dt, kRecordingRate);
-  require_within("the rate of the measured angles", 1 / motion.measured.dt, kRecordingRate);
+  require_within("the rate of the command", rate_of_rows(motion.command.dt), kRecordingRate);
+  require_within("the rate of the measured angles", rate_of_rows(motion.measured.dt),
+                 kRecordingRate);
   require_answer(model, motion.command, motion.measured, longest, place);
   report(progress, {"loads", 0, ""});
   const JointLoads loads = joint_loads(model, motion, options.stand);

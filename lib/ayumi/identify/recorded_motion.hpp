@@ -2,6 +2,7 @@
 // The command that a robot received and the angles that it measured, by joint, at common times.
 
 #include <Eigen/Core>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,9 @@ namespace ayumi {
 /// Bounds of the rate of a recording. Chosen: a slower recorder misses the motion, and no servo
 /// reports its angle more often.
 inline constexpr Bounds kRecordingRate = {1, 1e5, "1/s"};
+/// The rate [1/s] of rows that are `dt` [s] apart, to a millionth: the clock of a recorder is not
+/// more exact, so rows 1.0000000001 s apart have a rate of 1 Hz.
+inline double rate_of_rows(double dt) { return std::round(1e6 / dt) / 1e6; }
 
 /// Joint angles at a fixed rate. Row k is at time k dt.
 struct AngleTable {

@@ -102,10 +102,13 @@ class Cleaner {
   }
 
  private:
+  // The lines of an included file, and all in it, are those of another file.
   void note_lines(const TiXmlElement* printed, const TiXmlElement* stated) {
     for (; printed && stated; printed = printed->NextSiblingElement()) {
-      text_.lines[printed->Row()] = stated->Row();
-      note_lines(printed->FirstChildElement(), stated->FirstChildElement());
+      if (stated->GetUserData() != &is_included_) {
+        text_.lines[printed->Row()] = stated->Row();
+        note_lines(printed->FirstChildElement(), stated->FirstChildElement());
+      }
       stated = stated->NextSiblingElement();
     }
   }
@@ -139,7 +142,7 @@ class Cleaner {
         include(document.RootElement(), included, depth + 1);
         for (const TiXmlNode* each = document.RootElement()->FirstChild(); each;
              each = each->NextSibling())
-          parent->InsertBeforeChild(child, *each);
+          parent->InsertBeforeChild(child, *each)->SetUserData(&is_included_);
         parent->RemoveChild(child);
       } else {
         include(child, file, depth);
@@ -423,6 +426,7 @@ class Cleaner {
   MjcfText text_;
   size_t elements_ = 0;
   std::set<fs::path> included_;
+  char is_included_ = 0;  ///< its address marks the elements of included files
   std::string folder_;
   bool strip_ = false, weigh_all_ = false;
   std::map<std::string, std::string> parent_class_;

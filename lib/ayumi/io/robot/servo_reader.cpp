@@ -39,13 +39,16 @@ constexpr ValueRange kTorque = {0, kMostTorque, "N m"};
 constexpr ValueRange kDelay = {0, kMostServoDelay, "s", "; state it in seconds: 3.7 ms is 0.0037"};
 constexpr ValueRange kRate = {0, kMostRate, "rad/s"};
 constexpr ValueRange kExponent = {0.1, 10, ""};
-constexpr ValueRange kPlay = {0, kMostServoPlay, "rad", "; for degrees, use the key that ends in _deg"};
+constexpr ValueRange kPlay = {0, kMostServoPlay, "rad",
+                              "; for degrees, use the key that ends in _deg"};
 constexpr ValueRange kPlayDeg = {0, kMostServoPlay / kRadiansPerDegree, "deg"};
-constexpr ValueRange kOffset = {-kMostOffset, kMostOffset, "rad",
-                            "; for degrees, use the key that ends in _deg. For a larger offset, "
-                            "mount the horn in another position"};
-constexpr ValueRange kOffsetDeg = {-kMostOffset / kRadiansPerDegree, kMostOffset / kRadiansPerDegree,
-                               "deg", "; for a larger offset, mount the horn in another position"};
+constexpr ValueRange kOffset = {
+    -kMostOffset, kMostOffset, "rad",
+    "; for degrees, use the key that ends in _deg. For a larger offset, "
+    "mount the horn in another position"};
+constexpr ValueRange kOffsetDeg = {-kMostOffset / kRadiansPerDegree,
+                                   kMostOffset / kRadiansPerDegree, "deg",
+                                   "; for a larger offset, mount the horn in another position"};
 constexpr ValueRange kPositionGain = {0, 1e5, "1/s"};
 constexpr ValueRange kTorqueConstant = {0, kMostTorque, "N m/A"};
 constexpr ValueRange kResistance = {0, 1e6, "ohm"};

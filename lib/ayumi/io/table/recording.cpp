@@ -498,11 +498,11 @@ void require_rate(const RecordingOptions& options) {
 }
 
 void require_rate_of_rows(double dt, const std::string& file) {
-  if (!(1 / dt >= kRecordingRate.least && 1 / dt <= kRecordingRate.most))
-    complain(file, "the file has " + text::brief(1 / dt) +
-                       " rows per second, but a recording has " +
-                       text::brief(kRecordingRate.least) + " to " +
-                       text::brief(kRecordingRate.most) + "; correct the times");
+  const double rate = rate_of_rows(dt);
+  if (!(rate >= kRecordingRate.least && rate <= kRecordingRate.most))
+    complain(file, "the file has " + text::exact(rate) + " rows per second, but a recording has " +
+                       text::exact(kRecordingRate.least) + " to " +
+                       text::exact(kRecordingRate.most) + "; correct the times");
 }
 
 AngleTable readings_of(const std::string& bytes, const std::string& file, const RobotModel& model,
