@@ -1,7 +1,6 @@
 #include "options.hpp"
 
 #include <CLI/CLI.hpp>
-#include <cctype>
 
 namespace ayumi::app {
 
@@ -85,11 +84,12 @@ Option* Command::keep(CLI::Option* option) { return &options_.emplace_back(optio
 
 namespace {
 
-// Says that a word that stands where a value is needed is an option, so that the value is missing:
-// CLI11 takes such a word as the value. A negative number is no option.
-std::string complaint_of_option(const std::string& word, bool is_text) {
-  const bool is_letter = word.size() == 2 && std::isalpha(static_cast<unsigned char>(word[1])) != 0;
-  if (!word.starts_with("--") && !(is_text && word.starts_with("-") && is_letter)) return "";
+// Says that a word that stands where a value is needed is an option of the command, so that the
+// value is missing: CLI11 takes such a word as the value.
+std::string complaint_of_option(const CLI::App& command, const std::string& word, bool is_text) {
+  const CLI::App* level = word.starts_with("-") ? &command : nullptr;
+  while (level && !level->get_option_no_throw(word)) level = level->get_parent();
+  if (!level) return "";
   return "'" + word + "' is an option, but a value is needed" +
          (is_text ? "; for a file of this name, write ./" + word : "");
 }
@@ -103,7 +103,10 @@ std::string complaint_of_dash(const std::string& word) {
 
 Option* Command::keep_value(CLI::Option* option, bool is_text) {
   option->check(CLI::Validator(
-      [is_text](std::string& word) { return complaint_of_option(word, is_text); }, "", ""));
+      [command = &app_, is_text](std::string& word) {
+        return complaint_of_option(*command, word, is_text);
+      },
+      "", ""));
   return keep(option);
 }
 

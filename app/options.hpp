@@ -103,7 +103,7 @@ class Command {
 
  private:
   Option* keep(CLI::Option* option);
-  /// Keeps an option or argument with a value, which must not be the name of an option.
+  /// Keeps an option or argument with a value, which must not be an option of the command.
   Option* keep_value(CLI::Option* option, bool is_text);
   CLI::App& app_;
   std::list<Option> options_;
