@@ -1,7 +1,6 @@
 #include "options.hpp"
 
 #include <CLI/CLI.hpp>
-#include <cctype>
 
 namespace ayumi::app {
 
@@ -88,7 +87,7 @@ namespace {
 // Whether a word is the name of an option of the command or of the program.
 bool names_option(const CLI::App* command, const std::string& word) {
   for (; command != nullptr; command = command->get_parent())
-    if (command->get_option_no_throw(word.substr(0, word.find('='))) != nullptr) return true;
+    if (command->get_option_no_throw(word) != nullptr) return true;
   return false;
 }
 

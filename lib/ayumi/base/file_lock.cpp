@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <climits>
 #include <cstring>
 
 #include "ayumi/base/error.hpp"
@@ -77,9 +78,14 @@ LockedFolder lock_folder(const fs::path& folder, const std::string& name, const 
 void unlock_folder(const LockedFolder& locked) {
   ::unlink(locked.file.c_str());
   ::close(locked.descriptor);
-  fs::path folder = locked.folder;
-  for (int i = 0; i < locked.made && ::rmdir(folder.c_str()) == 0; ++i)  // only if it is empty
-    folder = folder.parent_path();
+  // Destructors call this when no memory is left, so it allocates nothing.
+  char folder[PATH_MAX] = {};
+  std::strncpy(folder, locked.folder.c_str(), sizeof folder - 1);
+  for (int i = 0; i < locked.made && ::rmdir(folder) == 0; ++i) {  // only an empty folder
+    char* const end = std::strrchr(folder, '/');
+    if (!end) return;
+    *end = '\0';
+  }
 }
 
 FileLock::FileLock(const fs::path& file)
