@@ -209,6 +209,13 @@ async function makesWhatIsNotThere(tab) {
   expect(await tab.run("return !document.querySelector('#selected [data-id=append]')"), "no phase can be added after one that is not the last");
   const shown = await tab.run("const s = window.ayumiAuthor.page.state; return [s.phases.length, s.error?.message ?? '']");
   expect(shown[0] === phases.length + 2 && !shown[1], "the page shows its rounds: " + shown);
+  if (last) {
+    const first = `[data-id^="${(await tab.run("return window.ayumiAuthor.page.state.keyframes.find((frame) => frame.repeated).pointer"))}/"]`;
+    const repeated = text();
+    await tab.drag(await tab.box(first), [12, 0]);
+    const said = await tab.run("return document.getElementById('said').textContent");
+    expect(said.includes("block that repeats") && text() === repeated, "a key of a block says why it does not move: " + said);
+  }
   await tab.after(() => tab.click("#undo"));
   expect(text() === before, "and back");
   await tab.click(`[data-id="/phases/${phases.length - 1}"]`);

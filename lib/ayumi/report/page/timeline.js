@@ -12,6 +12,13 @@ const trackWords = { zmp: "ZMP", cog: "COG", fz: "Vertical force", torso: "Trunk
 /// The smallest round step that is at least as long as a pixel of the timeline [s].
 export const roundStep = (perPixel) => [0.001, 0.01, 0.1].find((step) => step >= perPixel) ?? 1;
 
+/// The reasons why a key cannot be moved.
+const repeatedTime = "This key is in a block that repeats, so its time stands for several times. Change it in the text.";
+const writtenTime = "The time of this key is not written as a number or an expression. Change it in the text.";
+
+/// The number of pixels from which on a movement is a drag and not a click.
+const leastDrag = 4;
+
 export const nameOfTrack = (track) => trackWords[track.name] ||
   (track.kind === "joint" ? track.joint : track.name[0].toUpperCase() + track.name.slice(1));
 
@@ -120,6 +127,7 @@ export class Timeline {
         this.movable(mark, { time: key.time, room: roomOfKey(this.page.state.keyframes, key.pointer),
           words: "key", edits: (t) => moveKey(key, t),
           together: `[data-time="${key.time_pointer}"]` });
+      else if (this.page.can("edit")) this.fixed(mark, key.repeated ? repeatedTime : writtenTime);
       if (this.page.can("edit"))
         mark.addEventListener("keydown", (event) => {
           if (event.key !== "Delete") return;
@@ -247,6 +255,26 @@ export class Timeline {
     return this.lane("Findings", parts, "events");
   }
 
+  /// Says why a thing does not move if the author tries to move it.
+  fixed(mark, why) {
+    mark.addEventListener("pointerdown", (down) => {
+      if (down.button !== 0) return;
+      mark.setPointerCapture(down.pointerId);
+      const moved = (event) => {
+        if (Math.abs(event.clientX - down.clientX) < leastDrag) return;
+        mark.removeEventListener("pointermove", moved);
+        this.page.say(why);
+      };
+      mark.addEventListener("pointermove", moved);
+      mark.addEventListener("lostpointercapture", () => mark.removeEventListener("pointermove", moved), { once: true });
+    });
+    mark.addEventListener("keydown", (event) => {
+      if (!event.ctrlKey || !/^Arrow(Left|Right)$/.test(event.key)) return;
+      event.preventDefault();
+      this.page.say(why);
+    });
+  }
+
   /// Makes a thing movable by dragging, or by Ctrl and the arrow keys (with Shift by 1 ms). A move
   /// by keys is written after a short pause.
   movable(mark, { time, room, edits, together }) {
@@ -283,7 +311,7 @@ export class Timeline {
       let begun = false;
       mark.setPointerCapture(down.pointerId);
       const moved = (event) => {
-        if (!begun && Math.abs(event.clientX - begin) < 4) return;
+        if (!begun && Math.abs(event.clientX - begin) < leastDrag) return;
         if (!begun) {
           begun = true;
           this.dragged = mark;
