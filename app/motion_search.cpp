@@ -116,7 +116,8 @@ std::vector<std::vector<size_t>> nearest_first(const std::vector<Dial>& dials) {
 // The end of a motion in a simulation with the default controller.
 struct End {
   std::string falls;  // such as "with dtad, the robot fell at 3.2 s ..."; "" if the robot stands
-  double share = 1;   // share of the motion before the fall; 0 if the gains are unstable
+  double share = 1;   // share of the motion before the fall
+  bool unstable = false;  // the gains are unstable, so nothing was simulated
 };
 
 End end_in_simulation(const RobotModel& model, const Pattern& pattern) {
@@ -129,10 +130,10 @@ End end_in_simulation(const RobotModel& model, const Pattern& pattern) {
   const CommandSample& first = task.series.samples.front();
   const std::string unstable = instability(model, model.limits(task.profile), options.controller,
                                            first.cog.z() - first.zmp.z(), task.series.dt);
-  if (!unstable.empty()) return {unstable, 0};
+  if (!unstable.empty()) return {unstable, 0, true};
   const SimulationLog log = simulate(task, options);
   if (log.result.outcome != Outcome::fell) return {};
-  return {outcome_text(log), log.result.fell_at / pattern.duration()};
+  return {outcome_text(log), log.result.fell_at / pattern.duration(), false};
 }
 
 class MotionSearch {
@@ -179,7 +180,7 @@ class MotionSearch {
       result_.falls = end.falls;
       accepted_ = values;
     }
-    unstable_ |= end.share == 0;
+    unstable_ |= end.unstable;
     return {end.falls, "", -end.share};
   }
 

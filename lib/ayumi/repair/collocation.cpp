@@ -49,10 +49,11 @@ void free_end(const CorrectionSpec& spec, int first, double time, CorrectionVari
   if (!inside_a_window(spec, time, time) || !spec.free_ends[first == 0 ? 0 : 1]) return;
   for (const double kept : spec.kept_times)
     if (std::abs(kept - time) <= v.zero.spacing) return;
-  if (locked_within(spec, std::min(time, time + 3 * reach), std::max(time, time + 3 * reach)))
-    return;
+  const double begin = std::min(time, time + 3 * reach), end = std::max(time, time + 3 * reach);
+  if (locked_within(spec, begin, end)) return;
   for (int j = 0; j < v.index.cols(); ++j)
-    if (!is_locked(spec, j)) v.index.block<3, 1>(first, j).setConstant(v.count++);
+    if (!is_locked(spec, j) && !rests_within(spec, j, begin, end))
+      v.index.block<3, 1>(first, j).setConstant(v.count++);
 }
 
 struct SampleChoice {

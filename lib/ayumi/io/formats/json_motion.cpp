@@ -27,11 +27,7 @@ bool has_key(const MotionInput& source, const std::string& key) {
 }
 
 // An angle in degrees as text, with as many digits as a number in radians has.
-std::string degrees_text(double radians) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.12g", radians / kRadiansPerDegree);
-  return text;
-}
+std::string degrees_text(double radians) { return text::brief(radians / kRadiansPerDegree, 12); }
 
 // Reads rows, each with the same number of finite numbers.
 std::vector<std::vector<double>> frames_of(const MotionInput& source, const JsonNode& root,
@@ -147,8 +143,12 @@ std::vector<WrittenFile> write_poppy_move(const RobotModel&, const MotionFile& m
   const Eigen::Index rows = motion.rows();
   // The speeds are those of the angles as they are written, so that they are the same if the file
   // is read and written again.
-  const Eigen::MatrixXd written = motion.values.unaryExpr(
-      [](double angle) { return kRadiansPerDegree * std::stod(degrees_text(angle)); });
+  const Eigen::MatrixXd written = motion.values.unaryExpr([](double angle) {
+    const std::string text = degrees_text(angle);
+    double degrees = 0;
+    std::from_chars(text.data(), text.data() + text.size(), degrees);
+    return kRadiansPerDegree * degrees;
+  });
   for (Eigen::Index k = 0; k < rows; ++k) {
     text += (k > 0 ? ",\n    \"" : "\n    \"") + text::exact(motion.times[static_cast<size_t>(k)]) +
             "\": {";

@@ -24,7 +24,11 @@ struct Curve {
   std::map<double, double> keys;
 };
 
-void find_curves(const MotionInput& source, const TiXmlElement& element, double& rate,
+// Number of frames per second, by the name of the attribute that states it. That of the editor is
+// only what an editor shows.
+using Rates = std::map<std::string, double>;
+
+void find_curves(const MotionInput& source, const TiXmlElement& element, Rates& rates,
                  std::vector<Curve>& curves) {
   for (const char* name : {"fps", "editor:fps"})
     if (const char* const text = element.Attribute(name)) {
@@ -33,16 +37,16 @@ void find_curves(const MotionInput& source, const TiXmlElement& element, double&
       if (!(fps > 0))
         source.refuse(
             line, name + (" is " + text::brief(fps)) + "; give the number of frames per second");
-      if (rate > 0 && fps != rate)
+      const double before = rates.emplace(name, fps).first->second;
+      if (fps != before)
         source.refuse(line, name + (" is " + text::brief(fps)) +
-                                ", but another part of the file has " + text::brief(rate) +
+                                ", but another part of the file has " + text::brief(before) +
                                 "; give all parts the same rate");
-      rate = fps;
     }
   if (std::string(element.Value()) != "ActuatorCurve") {
     for (const TiXmlElement* child = element.FirstChildElement(); child;
          child = child->NextSiblingElement())
-      find_curves(source, *child, rate, curves);
+      find_curves(source, *child, rates, curves);
     return;
   }
   Curve curve;
@@ -95,12 +99,14 @@ MotionFile read_qianim(const MotionInput& source) {
     source.refuse(static_cast<size_t>(second->Row()),
                   "a second <" + second->ValueStr() +
                       "> begins here, but a file has one; cut the file before this line");
-  double rate = 0;  // 0: none was stated yet
+  Rates rates;
   std::vector<Curve> curves;
-  find_curves(source, *document.RootElement(), rate, curves);
+  find_curves(source, *document.RootElement(), rates, curves);
   if (curves.empty())
     source.refuse(0, "the file has no key, so there is no motion to read; write the file again");
-  if (rate == 0) rate = kUsualFrames;
+  const double rate = rates.contains("fps")          ? rates["fps"]
+                      : rates.contains("editor:fps") ? rates["editor:fps"]
+                                                     : kUsualFrames;
   std::map<double, Eigen::Index> frames;
   for (const Curve& curve : curves)
     for (const auto& [frame, value] : curve.keys) frames[frame] = 0;

@@ -433,9 +433,9 @@ class BodyReader {
                  " have the same joint_id " + text::exact(ids_[i].first) + "; give each its own");
     for (size_t i = 0; i < ids_.size(); ++i)
       if (ids_[i].first != static_cast<double>(i)) {
-        robot_.assumptions.push_back("no joint has the joint_id " + std::to_string(i) +
-                                     ", but a joint has the joint_id " +
-                                     text::exact(ids_.back().first) + "; is the file complete?");
+        robot_.assumptions.push_back(
+            "no joint has the joint_id " + std::to_string(i) + ", but a joint has the joint_id " +
+            text::exact(ids_.back().first) + ", so the file may be incomplete");
         break;
       }
     if (ids_.size() != moving) return;  // not all joints have an id

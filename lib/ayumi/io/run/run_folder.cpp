@@ -111,7 +111,7 @@ constexpr const char* kOtherHash = "its SHA-256 differs from the value";
 [[noreturn]] void complain_of_unlisted(const fs::path& file) {
   fail(ErrorCode::bad_file, {file.string()},
        "the run does not list this file in \"files\" of its run.json, so the file is of another "
-       "run or was changed; make the run again");
+       "run or was changed; remove the file, or make the run again");
 }
 
 // Whether a name is that of a file in the folder itself.
