@@ -252,7 +252,7 @@ const std::array<Job, 8> kJobs = {{
     {"laws", "other control laws, with a push and noise", laws_text,
      "ba12348c399d3640cd83b872c447d0eaa2dec12b7f2bd23145d4991e7483bbd0"},
     {"check", "findings and likely causes of patterns with mistakes", check_text,
-     "36a4753109f86af550703e37a9cb858cc4135dd638cbde6f4b9c3687c6203b07"},
+     "1a4d448e321962bb909d9e3d8a191daa297465acc3f50820fa51788ac8680048"},
     {"repair", "a repaired walk", repair_text,
      "16a496a391adf500cd5316e5b640ab9626fce3f2cea47a77d8aa2ad8a57cf4d8"},
     {"push", "limits of pushes", push_text,
