@@ -90,11 +90,15 @@ TEST_F(Replay, WhatWasExportedStands) {
 // The motor boards have a tick of 1 ms, whatever the servo period of the robot is. In an earlier
 // version, the log of such a replay was refused.
 TEST_F(Replay, TheRunOfASlowRobotIsRead) {
-  write(folder / "slow.json",
+  fs::create_directories(folder / "robots/slow");
+  write(folder / "robots/slow/robot.json",
         R"({"format": "ayumi.robot/1", "base": "hoap1", "name": "slow", "servo_period": 0.008})");
   export_bow("csv", "t.csv");
-  ASSERT_EQ(ayumi({"replay", "t.csv", "--robot", "slow.json", "-o", "r", "-q"}).exit_code, 0);
-  const Output out = ayumi({"export", "r", "--format", "csv", "-o", "again.csv", "-q"});
+  ASSERT_EQ(ayumi({"replay", "t.csv", "--robot", "slow", "--robot-path", "robots", "-o", "r", "-q"})
+                .exit_code,
+            0);
+  const Output out =
+      ayumi({"export", "r", "--robot-path", "robots", "--format", "csv", "-o", "again.csv", "-q"});
   EXPECT_EQ(out.exit_code, 0) << out.err << out.out;
 }
 

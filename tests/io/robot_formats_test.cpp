@@ -915,8 +915,8 @@ TEST(ChoreonoidBody, JointsThatAreHeldHaveNoPlaceInTheOrder) {
   EXPECT_EQ(RobotModel(robot).dof_names(), (std::vector<std::string>{"b", "a"}));
   const std::vector<std::string>& notes = robot.assumptions;
   EXPECT_NE(std::find(notes.begin(), notes.end(),
-                      "no joint has the joint_id 1, but a joint has the joint_id 3; is the file "
-                      "complete?"),
+                      "no joint has the joint_id 1, but a joint has the joint_id 3, so the file "
+                      "may be incomplete"),
             notes.end());
 }
 

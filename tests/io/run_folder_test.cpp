@@ -466,7 +466,7 @@ TEST(RunFolderFile, OnlyListedFilesInTheFolderAreRead) {
   expect_refused(nothing, "no error");
   const std::string unlisted =
       ": the run does not list this file in \"files\" of its run.json, so the file is of another "
-      "run or was changed; make the run again";
+      "run or was changed; remove the file, or make the run again";
   for (const std::string name : {"reference.csv", "log_open_loop.bin", "log_closed_loop.bin"})
     expect_refused(
         [&](Document& d) {

@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <utility>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file_lock.hpp"
@@ -179,6 +180,9 @@ FolderLock::FolderLock(const fs::path& folder) {
   descriptor_ = locked.descriptor;
 }
 
-FolderLock::~FolderLock() { unlock_folder({folder_, file_, made_, descriptor_}); }
+// A copy of the paths would need memory, of which nothing may be left.
+FolderLock::~FolderLock() {
+  unlock_folder({std::move(folder_), std::move(file_), made_, descriptor_});
+}
 
 }  // namespace ayumi

@@ -500,7 +500,7 @@ void require_rate(const RecordingOptions& options) {
 void require_rate_of_rows(double dt, const std::string& file) {
   const double rate = rate_of_rows(dt);
   if (!(rate >= kRecordingRate.least && rate <= kRecordingRate.most))
-    complain(file, "the file has " + text::exact(rate) + " rows per second, but a recording has " +
+    complain(file, "the file has " + text::brief(rate) + " rows per second, but a recording has " +
                        text::exact(kRecordingRate.least) + " to " +
                        text::exact(kRecordingRate.most) + "; correct the times");
 }
