@@ -157,6 +157,11 @@ KnownCases read_results(const std::filesystem::path& file, const Json& study, si
       if (entry.at("limits").size() != study.at("controllers").size())
         refuse(
             "the number of results of a push differs from the number of controllers of the study");
+      bool counted = entry.at("index").is_number_unsigned();
+      for (const auto& limit : entry.at("limits"))
+        counted = counted && limit.at("runs").is_number_integer();
+      if (!counted)
+        refuse("this file has a push whose index or number of runs is not a whole number");
       const PushCase push = case_from(entry);
       if (!is_possible(push)) refuse("this file has a push with numbers that no push has");
       known.at(entry.at("index")) = push;

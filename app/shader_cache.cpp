@@ -20,14 +20,15 @@ fs::path cache_folder() {
   for (const char* const name : {"MESA_SHADER_CACHE_DIR", "XDG_CACHE_HOME"})
     if (const char* const folder = std::getenv(name); folder && *folder) return folder;
   const char* const home = std::getenv("HOME");
-  return home && *home ? fs::path(home) : fs::path();
+  return home && *home ? fs::path(home) / ".cache" : fs::path();
 }
 
 }  // namespace
 
 void spare_full_disk_of_shaders() {
-  fs::path folder = cache_folder();
   std::error_code error;
+  fs::path folder = cache_folder();
+  if (!folder.empty()) folder = fs::absolute(folder, error);
   while (!folder.empty() && folder != folder.parent_path() && !fs::exists(folder, error))
     folder = folder.parent_path();
   if (folder.empty()) return;

@@ -318,15 +318,31 @@ bool is_reference_table(const std::string& path) {
                                                        "\"ayumi.reference/") != std::string::npos);
 }
 
-// Throws Error(bad_file) unless a table in a run folder is one of the run's own, and the run is as
-// it was written. Other files in such a folder are the user's.
+fs::path folder_of(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
+// The text of a table. If it belongs to a run, the whole run must be as it was written.
+std::string text_of_table(const fs::path& table) {
+  const fs::path folder = folder_of(table);
+  const std::string name = table.filename().string();
+  if (is_run_folder(folder)) {
+    const std::vector<std::string> names = run_file_names(folder);
+    if (std::find(names.begin(), names.end(), name) != names.end())
+      if (auto text = verify_run(folder, name)) return *std::move(text);
+  }
+  return read_file(table);
+}
+
+// Throws Error(bad_file) unless a table in a run folder that has the name of the run's own one is
+// the table that the log gives. Other files in such a folder are the user's.
 void require_table_of_run(const ReferenceTrajectory& table, ExportOptions options,
                           const Context& context) {
   const fs::path path = options.input;
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  const bool pushed = path.filename() == kPushedTable;
-  if ((!pushed && path.filename() != kTable) || !is_run_folder(folder)) return;
-  const RunFolder run = read_run(folder, ComparedFiles::all);
+  const fs::path folder = folder_of(path);
+  const bool pushed = path.stem() == fs::path(kPushedTable).stem();
+  if ((!pushed && path.stem() != fs::path(kTable).stem()) || !is_run_folder(folder)) return;
+  const RunFolder run = read_run(folder);
   if (pushed ? !run.pushed : !run.reference) return;  // a light run beside a table of the user
   options.pushed = pushed;
   options.log.clear();
@@ -346,7 +362,7 @@ Source source_of(const ExportOptions& options, const Context& context) {
   if (fs::is_directory(options.input)) return source_of_run(options, context);
   refuse_log_file(options.input);
   if (!is_reference_table(options.input)) return source_of_pattern(options, context);
-  const std::string text = read_file(options.input);
+  const std::string text = text_of_table(options.input);
   if (!options.servo.empty())
     fail(ErrorCode::usage, {options.input},
          "--servo cannot change the content of a table that exists; to "

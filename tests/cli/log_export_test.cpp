@@ -284,6 +284,20 @@ TEST_F(LogExport, ForgedPosturesAreRefused) {
     EXPECT_NE(entry.path().stem(), "f") << entry.path();
 }
 
+// A table of a run that was edited, read as a file.
+TEST_F(LogExport, EditedTablesOfARunAreRefused) {
+  for (const std::string name : {"reference.csv", "reference.json", "reference_pushed.csv"}) {
+    fs::remove_all(folder->path() / "edited");
+    fs::copy(folder->path() / "run", folder->path() / "edited");
+    const fs::path file = folder->path() / "edited" / name;
+    std::string text = contents(file);
+    const size_t at = text.find_last_of("0123456789");
+    text[at] = text[at] == '1' ? '2' : '1';
+    write(file, text);
+    expect_refused({"edited/" + name, "--format", "csv", "--pushed", "-o", "e.csv"}, 3, name);
+  }
+}
+
 // A table that does not come from the log of its run, with all hashes made to fit.
 TEST_F(LogExport, TablesOfAnotherLogAreRefused) {
   const auto expect_refused_run = [&](const std::string& what, const auto& forge,

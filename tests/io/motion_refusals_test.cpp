@@ -253,8 +253,9 @@ TEST(MotionRefusals, Animations) {
   std::string keys;
   for (int frame = 0; frame < 6; ++frame)
     keys += "<Key value=\"1\" frame=\"" + std::to_string(frame) + "\"/>";
-  EXPECT_NO_THROW(read_motion_rows("<a editor:fps=\"30\">\n" + curve(keys) + "</a>\n", "m.qianim",
-                                   hoap1(), {}));
+  for (const std::string shown : {"30", "0"})
+    EXPECT_NO_THROW(read_motion_rows("<a editor:fps=\"" + shown + "\">\n" + curve(keys) + "</a>\n",
+                                     "m.qianim", hoap1(), {}));
 }
 
 // The rate and the times of rows, in whatever format they are stated.

@@ -28,16 +28,19 @@ struct Curve {
 // only what an editor shows.
 using Rates = std::map<std::string, double>;
 
+std::string words_of_no_rate(const std::string& name, double fps) {
+  return name + " is " + text::brief(fps) + "; give the number of frames per second";
+}
+
 void find_curves(const MotionInput& source, const TiXmlElement& element, Rates& rates,
                  std::vector<Curve>& curves) {
   for (const char* name : {"fps", "editor:fps"})
     if (const char* const text = element.Attribute(name)) {
       const auto line = static_cast<size_t>(element.Row());
       const double fps = source.number(text, line, name);
-      if (!(fps > 0))
-        source.refuse(
-            line, name + (" is " + text::brief(fps)) + "; give the number of frames per second");
       const double before = rates.emplace(name, fps).first->second;
+      if (std::string(name) != "fps") continue;
+      if (!(fps > 0)) source.refuse(line, words_of_no_rate(name, fps));
       if (fps != before)
         source.refuse(line, name + (" is " + text::brief(fps)) +
                                 ", but another part of the file has " + text::brief(before) +
@@ -107,6 +110,7 @@ MotionFile read_qianim(const MotionInput& source) {
   const double rate = rates.contains("fps")          ? rates["fps"]
                       : rates.contains("editor:fps") ? rates["editor:fps"]
                                                      : kUsualFrames;
+  if (!(rate > 0)) source.refuse(0, words_of_no_rate("editor:fps", rate));
   std::map<double, Eigen::Index> frames;
   for (const Curve& curve : curves)
     for (const auto& [frame, value] : curve.keys) frames[frame] = 0;
