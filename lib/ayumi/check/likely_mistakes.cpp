@@ -510,8 +510,9 @@ std::vector<std::string> cause_texts(const std::vector<Mistake>& mistakes) {
 Error with_mistakes(const Error& error, const Pattern& pattern,
                     const std::vector<Mistake>& mistakes) {
   if (mistakes.empty()) return error;
-  const std::vector<std::string> texts = cause_texts(mistakes);
-  if (texts.empty()) {
+  const auto cause = std::find_if(mistakes.begin(), mistakes.end(),
+                                  [](const Mistake& mistake) { return mistake.is_cause; });
+  if (cause == mistakes.end()) {
     const std::string more = "; " + mistakes.front().words;
     return {error.code(), error.what() + more, error.place(), error.words() + more};
   }
@@ -524,11 +525,7 @@ Error with_mistakes(const Error& error, const Pattern& pattern,
                             "; the first error is: " + (in_file ? error.words() : error.what());
   SourcePlace place = error.place();
   // What should be changed is where the first cause is.
-  if (in_file) {
-    const auto cause = std::find_if(mistakes.begin(), mistakes.end(),
-                                    [](const Mistake& mistake) { return mistake.is_cause; });
-    if (cause->place.starts_with("/")) place.inside = cause->place;
-  }
+  if (in_file && cause->place.starts_with("/")) place.inside = cause->place;
   return {error.code(), (in_file ? pattern.file + ": " : "") + words, place, words};
 }
 

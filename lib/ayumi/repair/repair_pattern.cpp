@@ -66,9 +66,14 @@ bool has_only_goals(const Pattern& pattern, double dt) {
   return !rows && std::none_of(pattern.keyframes.begin(), pattern.keyframes.end(), on_the_way);
 }
 
-bool flies(const Pattern& pattern) {
-  return std::any_of(pattern.phases.begin(), pattern.phases.end(),
-                     [](const Phase& phase) { return phase.support == Support::none; });
+// Duration of the longest flight [s]; 0 if there is none.
+double longest_flight(const Pattern& pattern) {
+  double longest = 0, begin = 0;
+  for (const Phase& phase : pattern.phases) {
+    if (phase.support == Support::none) longest = std::max(longest, phase.until - begin);
+    begin = phase.until;
+  }
+  return longest;
 }
 
 // The starts of a plan, and what they are judged by.
@@ -176,9 +181,13 @@ GeneratedMotion generate(const RobotModel& model, const Pattern& pattern, const 
   };
   PlanStart start = {.series = plan, .violation = starts.violation_of(plan)};
   start = starts.better_than(std::move(start), {});
-  if (flies(pattern))
-    for (const double ramp : policy::generation::kFlightRamps)
-      start = starts.better_than(std::move(start), {.flight_ramp = ramp});
+  // A ramp is at most half of a flight, so a longer one than that gives the same plan once more.
+  const double longest_ramp = longest_flight(pattern) / 2;
+  double tried = kFlightRamp;
+  for (const double ramp : policy::generation::kFlightRamps) {
+    if (longest_ramp > tried) start = starts.better_than(std::move(start), {.flight_ramp = ramp});
+    tried = ramp;
+  }
   const bool may_lead = has_key(pattern, &Keyframe::cog_x) || has_key(pattern, &Keyframe::cog_y);
   const bool only_goals = has_only_goals(pattern, plan.dt);
   if (may_lead && only_goals)

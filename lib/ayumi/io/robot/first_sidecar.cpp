@@ -524,8 +524,7 @@ void require_weight(const RobotModel& model, const std::string& file) {
              text::brief(size) +
              " m apart, so it is lighter than a balloon of helium of this size; masses must be in "
              "kg and lengths in m: divide the lengths by 1000 if they are in millimetres, or give "
-             "the "
-             "true masses");
+             "the true masses");
 }
 
 std::vector<std::string> to_do_list(const RobotModel& model, const RobotGuess& guess) {
