@@ -6,18 +6,18 @@
 #include <cmath>
 #include <csignal>
 #include <cstring>
-#include <nlohmann/json.hpp>
 #include <random>
 #include <thread>
 
 #include "ayumi/base/file.hpp"
 #include "tests/cli/program.hpp"
+#include "tests/support/json.hpp"
 
 namespace ayumi::test {
 namespace {
 
 using namespace std::chrono_literals;
-using OrderedJson = nlohmann::ordered_json;
+using Json = nlohmann::json;
 
 // Longest time that the server may take for anything here [s]. Chosen: a hundred times what it
 // needs.
@@ -47,7 +47,7 @@ class Server {
     char letter = 0;
     while (::read(out[0], &letter, 1) == 1 && letter != '\n') said += letter;
     ::close(out[0]);
-    const std::string address = OrderedJson::parse(said, nullptr, false).value("address", "");
+    const std::string address = json_or_nothing(said).value("address", "");
     const size_t colon = address.rfind(':'), slash = address.find('/', colon);
     if (slash == std::string::npos) return;
     port_ = std::stoi(address.substr(colon + 1));
@@ -74,20 +74,20 @@ class Server {
     const auto answer = client().Get(root_ + path);
     return answer && answer->status == 200 ? answer->body : "";
   }
-  OrderedJson state() const { return OrderedJson::parse(get("state")); }
-  std::pair<int, OrderedJson> post(const std::string& path, const OrderedJson& body) const {
+  Json state() const { return json_of(get("state")); }
+  std::pair<int, Json> post(const std::string& path, const Json& body) const {
     const auto answer = client().Post(root_ + path, body.dump(), "application/json");
     if (!answer) return {0, {}};
-    return {answer->status, OrderedJson::parse(answer->body, nullptr, false)};
+    return {answer->status, json_or_nothing(answer->body)};
   }
-  std::pair<int, OrderedJson> edit(const OrderedJson& edits) const {
+  std::pair<int, Json> edit(const Json& edits) const {
     return post("edit", {{"hash", state()["hash"]}, {"edits", edits}});
   }
   /// Waits for a state for which `holds` returns true.
   template <typename Holds>
-  OrderedJson state_when(const Holds& holds) const {
+  Json state_when(const Holds& holds) const {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(kServerPatience);
-    OrderedJson now = state();
+    Json now = state();
     while (!holds(now) && std::chrono::steady_clock::now() < end) {
       std::this_thread::sleep_for(10ms);
       now = state();
@@ -120,7 +120,7 @@ class Server {
 };
 
 /// The edit that sets one value.
-OrderedJson set(const std::string& pointer, const OrderedJson& value) {
+Json set(const std::string& pointer, const Json& value) {
   return {{{"kind", "set"}, {"pointer", pointer}, {"value", value}}};
 }
 
@@ -248,8 +248,7 @@ TEST_F(AuthorServer, FollowsTheFileAndNamesTheLineOfAnError) {
   const Server server(file);
   EXPECT_TRUE(server.state()["consistent"].get<bool>());
   save(replaced(R"({ "t": 3.771, "zmp": "left" })", R"({ "t": 3.771, "zmp": [0.12, 0.085] })"));
-  OrderedJson state =
-      server.state_when([](const OrderedJson& now) { return now["consistent"] == false; });
+  Json state = server.state_when([](const Json& now) { return now["consistent"] == false; });
   ASSERT_FALSE(state["findings"].empty());
   EXPECT_NE(server.get("series?which=ghost"), "") << "the last consistent motion";
   EXPECT_EQ(server.get("series?which=ghost").size(), server.get("series?which=plan").size());
@@ -269,7 +268,7 @@ TEST_F(AuthorServer, FollowsTheFileAndNamesTheLineOfAnError) {
   for (const Case& each : cases) {
     save(replaced(each.what, each.by));
     state = server.state_when(
-        [&](const OrderedJson& now) { return now["text"] == replaced(each.what, each.by); });
+        [&](const Json& now) { return now["text"] == replaced(each.what, each.by); });
     ASSERT_FALSE(state["error"].is_null()) << each.by;
     EXPECT_TRUE(state["stale"].get<bool>());
     EXPECT_NE(state["error"]["message"].get<std::string>().find(each.message), std::string::npos);
@@ -277,7 +276,7 @@ TEST_F(AuthorServer, FollowsTheFileAndNamesTheLineOfAnError) {
     EXPECT_EQ(server.get("series?which=plan"), old) << "the old motion is still there";
   }
   save(walk);
-  state = server.state_when([](const OrderedJson& now) { return now["error"].is_null(); });
+  state = server.state_when([](const Json& now) { return now["error"].is_null(); });
   EXPECT_TRUE(state["consistent"].get<bool>());
 }
 
@@ -304,8 +303,8 @@ TEST_F(AuthorServer, AnErrorWithALikelyCauseIsAtTheLineOfTheCause) {
 }
 )";
   save(kick);
-  const OrderedJson error =
-      server.state_when([&](const OrderedJson& now) { return now["text"] == kick; })["error"];
+  const Json error =
+      server.state_when([&](const Json& now) { return now["text"] == kick; })["error"];
   ASSERT_FALSE(error.is_null());
   EXPECT_TRUE(error["message"].get<std::string>().starts_with("likely cause: /keyframes/3: "))
       << error;
@@ -316,8 +315,7 @@ TEST_F(AuthorServer, AnErrorOfTheWholeFileHasNoLine) {
   const Server server(file);
   const std::string without = R"({ "format": "ayumi.pattern/1", "robot": "hoap1" })";
   save(without);
-  const OrderedJson state =
-      server.state_when([&](const OrderedJson& now) { return now["text"] == without; });
+  const Json state = server.state_when([&](const Json& now) { return now["text"] == without; });
   ASSERT_FALSE(state["error"].is_null());
   EXPECT_FALSE(state["error"].contains("line")) << state["error"].dump();
 }
@@ -327,7 +325,7 @@ TEST_F(AuthorServer, GoesOnAfterATextThatIsNoJson) {
   const std::string good = contents(file), broken = replaced("\"phases\"", "phases");
   const auto shown = [&](const std::string& text) {
     save(text);
-    return server.state_when([&](const OrderedJson& now) { return now["text"] == text; });
+    return server.state_when([&](const Json& now) { return now["text"] == text; });
   };
   const auto line = 1 + std::count(good.begin(), good.begin() + good.find("\"phases\""), '\n');
   EXPECT_EQ(shown(broken)["error"]["line"], line);
@@ -347,8 +345,7 @@ TEST_F(AuthorServer, ShowsTheLastOfManyQuickSaves) {
       write(file, last);  // the file is written in place, as some editors do
     std::this_thread::sleep_for(3ms);
   }
-  EXPECT_EQ(server.state_when([&](const OrderedJson& now) { return now["text"] == last; })["text"],
-            last);
+  EXPECT_EQ(server.state_when([&](const Json& now) { return now["text"] == last; })["text"], last);
 }
 
 // An editor may empty the file and write it a moment later. The empty text is not shown, and Undo
@@ -362,8 +359,7 @@ TEST_F(AuthorServer, AFileThatIsWrittenInStepsIsReadWhenItIsWhole) {
     write(file, text.substr(0, 300));
     std::this_thread::sleep_for(30ms);
     write(file, text);
-    const OrderedJson state =
-        server.state_when([&](const OrderedJson& now) { return now["text"] == text; });
+    const Json state = server.state_when([&](const Json& now) { return now["text"] == text; });
     EXPECT_EQ(state["undo"], i + 1) << "one step for each save";
   }
 }
@@ -371,7 +367,7 @@ TEST_F(AuthorServer, AFileThatIsWrittenInStepsIsReadWhenItIsWhole) {
 TEST_F(AuthorServer, WritesEditsIntoTheTextAndTakesThemBack) {
   shorten();
   const Server server(file);
-  const OrderedJson edits = {{{"kind", "set"}, {"pointer", "/keyframes/1/t"}, {"value", 0.75}}};
+  const Json edits = {{{"kind", "set"}, {"pointer", "/keyframes/1/t"}, {"value", 0.75}}};
   ASSERT_EQ(server.edit(edits).first, 200);
   EXPECT_EQ(contents(file), replaced("\"t\": 0.71", "\"t\": 0.75"));
   EXPECT_EQ(server.state()["keyframes"][1]["time"], 0.75);
@@ -400,14 +396,13 @@ TEST_F(AuthorServer, AfterEditsItShowsWhatAServerShowsThatStartsAnew) {
            1e4;
   };
   for (int i = 0; i < 8; ++i) {
-    const OrderedJson edits = i % 4 == 0   ? set("/keyframes/1/t", between(0.5, 0.7))
-                              : i % 4 == 1 ? set("/defaults/cog_height", between(0.2, 0.225))
-                              : i % 4 == 2
-                                  ? set("/world/friction", between(0.02, 0.8))
-                                  : set("/keyframes/1/joints/r_shoulder_pitch", between(60, 120));
+    const Json edits = i % 4 == 0   ? set("/keyframes/1/t", between(0.5, 0.7))
+                       : i % 4 == 1 ? set("/defaults/cog_height", between(0.2, 0.225))
+                       : i % 4 == 2 ? set("/world/friction", between(0.02, 0.8))
+                                    : set("/keyframes/1/joints/r_shoulder_pitch", between(60, 120));
     ASSERT_EQ(server.edit(edits).first, 200) << edits.dump();
     const Server anew(file);
-    const OrderedJson now = server.state(), expected = anew.state();
+    const Json now = server.state(), expected = anew.state();
     ASSERT_TRUE(expected["error"].is_null()) << expected["error"].dump();
     for (const char* const part :
          {"text", "consistent", "reason", "findings", "groups", "tracks", "phases"})
@@ -472,11 +467,11 @@ TEST_F(AuthorServer, AdvisesTheButtonOfTheRepair) {
 // both have can be changed.
 TEST_F(AuthorServer, RefusesEditsThatMakeThePatternUnreadable) {
   const Server server(file);
-  const auto can_edit = [](const OrderedJson& state) {
+  const auto can_edit = [](const Json& state) {
     return state["features"].dump().find("\"edit\"") != std::string::npos;
   };
-  for (const OrderedJson& edit : {set("/keyframes/1/t", 2.9), set("/phases/0/support", "left foot"),
-                                  set("/keyframes/1/wrong", 1)}) {
+  for (const Json& edit : {set("/keyframes/1/t", 2.9), set("/phases/0/support", "left foot"),
+                           set("/keyframes/1/wrong", 1)}) {
     const auto [status, answer] = server.edit(edit);
     EXPECT_EQ(status, 422) << edit;
     const std::string message = answer["message"];
@@ -485,7 +480,7 @@ TEST_F(AuthorServer, RefusesEditsThatMakeThePatternUnreadable) {
     EXPECT_EQ(contents(file), walk);
   }
   ASSERT_EQ(server.edit(set("/phases/1/swing/to/0", 0.4)).first, 200);
-  OrderedJson state = server.state();
+  Json state = server.state();
   EXPECT_FALSE(state["error"].is_null());
   EXPECT_TRUE(can_edit(state)) << "the value can be typed anew";
   EXPECT_EQ(state["phases"][1]["swing"]["to"][0], 0.4) << "the timeline shows the text";
@@ -493,26 +488,25 @@ TEST_F(AuthorServer, RefusesEditsThatMakeThePatternUnreadable) {
   EXPECT_EQ(contents(file), walk);
   const std::string other = replaced("\"keyframes\": [", "\"keyframes\": [ { \"t\": 0 },");
   save(other);
-  state = server.state_when([&](const OrderedJson& now) { return now["text"] == other; });
+  state = server.state_when([&](const Json& now) { return now["text"] == other; });
   EXPECT_FALSE(state["error"].is_null());
   EXPECT_FALSE(can_edit(state)) << "every keyframe has another place";
   const std::string broken = "{ \"format\": oops }";
   save(broken);
-  state = server.state_when([&](const OrderedJson& now) { return now["text"] == broken; });
+  state = server.state_when([&](const Json& now) { return now["text"] == broken; });
   EXPECT_EQ(state["error"]["line"], 1);
   EXPECT_EQ(state["error"]["message"].get<std::string>().find(file.string()), std::string::npos)
       << state["error"];
   save(walk);
-  EXPECT_TRUE(
-      can_edit(server.state_when([](const OrderedJson& now) { return now["error"].is_null(); })));
+  EXPECT_TRUE(can_edit(server.state_when([](const Json& now) { return now["error"].is_null(); })));
 }
 
 TEST_F(AuthorServer, NeverOverwritesAChangeOnDisk) {
   const Server server(file);
-  const OrderedJson seen = server.state()["hash"];
+  const Json seen = server.state()["hash"];
   const std::string theirs = replaced("hoap1_walk", "theirs");
   save(theirs);
-  const OrderedJson edits = {{{"kind", "set"}, {"pointer", "/keyframes/0/zmp"}, {"value", "left"}}};
+  const Json edits = {{{"kind", "set"}, {"pointer", "/keyframes/0/zmp"}, {"value", "left"}}};
   const auto [status, answer] = server.post("edit", {{"hash", seen}, {"edits", edits}});
   EXPECT_EQ(status, 409);
   EXPECT_EQ(contents(file), theirs);
@@ -537,7 +531,7 @@ TEST_F(AuthorServer, KeepsLinksAndPermissions) {
 }
 
 // The point at which the page would draw a handle, taken from the row of the table.
-std::array<double, 3> cog_of(const OrderedJson& state, const OrderedJson& row) {
+std::array<double, 3> cog_of(const Json& state, const Json& row) {
   std::array<double, 3> cog{};
   const auto& columns = state["replay"]["columns"];
   for (size_t i = 0; i < columns.size(); ++i)
@@ -546,13 +540,13 @@ std::array<double, 3> cog_of(const OrderedJson& state, const OrderedJson& row) {
   return cog;
 }
 
-OrderedJson row_at(const Server& server, const OrderedJson& state, double time) {
+Json row_at(const Server& server, const Json& state, double time) {
   const std::string bytes = server.get("series?which=plan");
   const size_t width = state["replay"]["columns"].size();
   std::vector<float> table(bytes.size() / sizeof(float));
   std::memcpy(table.data(), bytes.data(), bytes.size());
   const auto at = static_cast<size_t>(std::lround(time * state["replay"]["rate"].get<double>()));
-  OrderedJson row = OrderedJson::array();
+  Json row = Json::array();
   for (size_t i = 0; i < width; ++i) row.push_back(table[at * width + i]);
   return row;
 }
@@ -585,18 +579,18 @@ TEST_F(AuthorServer, EditsAPatternInFewWords) {
 })";
   save(text);
   const Server server(file);
-  const OrderedJson state = server.state();
+  const Json state = server.state();
   ASSERT_TRUE(state["error"].is_null()) << state["error"];
   ASSERT_EQ(state["phases"].size(), 10u);
   EXPECT_EQ(state["phases"][5]["pointer"], "/phases/1/phases/0");
   EXPECT_EQ(state["phases"][5]["repeated"], true);
   EXPECT_EQ(state["phases"][9]["until_pointer"], "/phases/2/duration");
   EXPECT_NEAR(state["phases"][9]["until_base"].get<double>(), 3.2, 1e-9);
-  const auto dragged = [&](const OrderedJson& wish) {
+  const auto dragged = [&](const Json& wish) {
     const auto [status, answer] = server.post("pose", wish);
     EXPECT_EQ(status, 200) << wish << answer;
     EXPECT_EQ(server.edit(answer["edits"]).first, 200);
-    const OrderedJson now = server.state();
+    const Json now = server.state();
     EXPECT_TRUE(now["error"].is_null()) << now["error"];
     const std::string after = contents(file);
     EXPECT_EQ(server.post("undo", {{"hash", now["hash"]}}).first, 200);
@@ -630,31 +624,30 @@ TEST_F(AuthorServer, EditsAPatternInFewWords) {
 TEST_F(AuthorServer, SaysThatTheFileIsGone) {
   const Server server(file);
   fs::remove(file);
-  const OrderedJson gone =
-      server.state_when([](const OrderedJson& now) { return !now["error"].is_null(); });
+  const Json gone = server.state_when([](const Json& now) { return !now["error"].is_null(); });
   EXPECT_NE(gone["error"].dump().find("no longer exists"), std::string::npos) << gone["error"];
   save(walk);
   EXPECT_TRUE(
-      server.state_when([](const OrderedJson& now) { return now["error"].is_null(); })["consistent"]
+      server.state_when([](const Json& now) { return now["error"].is_null(); })["consistent"]
           .get<bool>());
 }
 
 // The arm only moves between the keyframes around the new key.
 TEST_F(AuthorServer, TheFirstKeyOfAJointKeepsTheMotionAround) {
   const Server server(file);
-  const OrderedJson before = server.state();
+  const Json before = server.state();
   const auto [status, answer] =
       server.post("pose", {{"time", 2.4}, {"joints", {{"l_shoulder_pitch", 0.7}}}});
   ASSERT_EQ(status, 200) << answer;
   const std::string joint = "q.l_shoulder_pitch";
-  const auto angle = [&](const OrderedJson& state, double t) {
+  const auto angle = [&](const Json& state, double t) {
     const auto& columns = state["replay"]["columns"];
     const auto i = std::find(columns.begin(), columns.end(), joint) - columns.begin();
     return row_at(server, state, t)[static_cast<size_t>(i)];
   };
   const double rest = angle(before, 2.4);
   ASSERT_EQ(server.edit(answer["edits"]).first, 200);
-  const OrderedJson after = server.state();
+  const Json after = server.state();
   ASSERT_TRUE(after["error"].is_null()) << after["error"];
   EXPECT_NEAR(angle(after, 2.4), 0.7, 1e-3);
   for (const auto& frame : before["keyframes"])
@@ -663,9 +656,9 @@ TEST_F(AuthorServer, TheFirstKeyOfAJointKeepsTheMotionAround) {
 
 TEST_F(AuthorServer, WhatIsDraggedIsWhatThePatternThenIs) {
   const Server server(file);
-  const OrderedJson state = server.state();
+  const Json state = server.state();
   const auto cog = cog_of(state, row_at(server, state, 2.4));
-  const std::vector<OrderedJson> wishes = {
+  const std::vector<Json> wishes = {
       {{"time", 2.4}, {"joints", {{"l_shoulder_pitch", 0.7}}}},
       {{"time", 2.4}, {"drag", "left_hand"}, {"to", {0.2, 0.15, 0.25}}},
       {{"time", 2.4}, {"drag", "left_foot"}, {"to", {0.05, 0.045, 0.0}}},
@@ -673,16 +666,16 @@ TEST_F(AuthorServer, WhatIsDraggedIsWhatThePatternThenIs) {
       {{"time", 0.4}, {"drag", "right_foot"}, {"to", {0.005, -0.042, 0.0}}},
       {{"time", 2.4}, {"drag", "trunk"}, {"to", {0.06, 0.03, 0.46}}},
       {{"time", 2.4}, {"drag", "cog"}, {"to", {cog[0] + 0.002, cog[1] + 0.001, cog[2] - 0.003}}}};
-  for (const OrderedJson& wish : wishes) {
+  for (const Json& wish : wishes) {
     const auto [status, answer] = server.post("pose", wish);
     ASSERT_EQ(status, 200) << wish << answer;
     ASSERT_TRUE(answer["row"].is_array()) << wish << answer["message"];
     ASSERT_FALSE(answer["edits"].empty()) << wish;
     EXPECT_EQ(contents(file), walk) << "nothing is written while it is tried";
     ASSERT_EQ(server.edit(answer["edits"]).first, 200);
-    const OrderedJson now = server.state();
+    const Json now = server.state();
     ASSERT_TRUE(now["error"].is_null()) << now["error"];
-    const OrderedJson row = row_at(server, now, wish["time"]);
+    const Json row = row_at(server, now, wish["time"]);
     const auto& columns = now["replay"]["columns"];
     for (size_t i = 0; i < columns.size(); ++i) {
       const std::string name = columns[i];
@@ -701,7 +694,7 @@ TEST_F(AuthorServer, WhatIsDraggedIsWhatThePatternThenIs) {
 TEST_F(AuthorServer, ADragOfTheTrunkLeansItOrMovesItUpAndDown) {
   const Server server(file);
   const auto edits_of = [&](const std::vector<double>& to) {
-    const OrderedJson wish = {{"time", 2.4}, {"drag", "trunk"}, {"from", {0, 0, 0}}, {"to", to}};
+    const Json wish = {{"time", 2.4}, {"drag", "trunk"}, {"from", {0, 0, 0}}, {"to", to}};
     const auto [status, answer] = server.post("pose", wish);
     EXPECT_EQ(status, 200) << answer;
     EXPECT_TRUE(answer["message"].is_null()) << answer["message"];
@@ -726,7 +719,7 @@ TEST_F(AuthorServer, AnArmThatIsDraggedTooFarStaysWithinItsLimits) {
     ASSERT_FALSE(answer.second["message"].is_null());
     ASSERT_EQ(server.edit(answer.second["edits"]).first, 200);
   }
-  for (const OrderedJson& finding : server.state()["findings"])
+  for (const Json& finding : server.state()["findings"])
     EXPECT_NE(finding["kind"], "table_position") << finding;
 }
 
@@ -749,9 +742,9 @@ TEST_F(AuthorServer, RefusesAKeyInsideAViipPhase) {
   const std::string text = contents(AYUMI_SOURCE_DIR "/patterns/hoap1_viip_step.json");
   save(text);
   const Server server(file);
-  const OrderedJson key = {{"t", 1.5}, {"cog", {{"height", 0.22}}}};
-  const auto refused = server.edit(
-      OrderedJson::array({{{"kind", "set"}, {"pointer", "/keyframes"}, {"value", {key}}}}));
+  const Json key = {{"t", 1.5}, {"cog", {{"height", 0.22}}}};
+  const auto refused =
+      server.edit(Json::array({{{"kind", "set"}, {"pointer", "/keyframes"}, {"value", {key}}}}));
   EXPECT_EQ(refused.first, 422) << refused.second;
   EXPECT_NE(refused.second["message"].get<std::string>().find(
                 "the key at 1.5 s lies inside the VIIP phase from 0.5 to 5.5 s"),
@@ -777,20 +770,20 @@ TEST_F(AuthorServer, MovesTargetsAndMirrorsKeyframes) {
 )";
   save(text);
   const Server server(file);
-  const OrderedJson state = server.state();
+  const Json state = server.state();
   ASSERT_TRUE(state["error"].is_null()) << state["error"];
   ASSERT_EQ(state["targets"].size(), 3u);
-  EXPECT_EQ(state["targets"][0]["place"], OrderedJson({0.2, 0.25, 0.6}));
+  EXPECT_EQ(state["targets"][0]["place"], Json({0.2, 0.25, 0.6}));
   EXPECT_EQ(state["targets"][0]["until"], 2);
   EXPECT_EQ(state["targets"][0]["handle"], "left_hand");
-  EXPECT_GT(state["targets"][1]["place"][2], 0.5) << "in the world, not in the trunk's frame";
+  EXPECT_GT(double(state["targets"][1]["place"][2]), 0.5)
+      << "in the world, not in the trunk's frame";
   const auto moved = server.post(
       "pose", {{"time", 1}, {"target", "/keyframes/1/hands/left"}, {"to", {0.22, 0.25, 0.6}}});
   ASSERT_EQ(moved.first, 200) << moved.second;
   EXPECT_TRUE(moved.second["message"].is_null()) << moved.second["message"];
   EXPECT_EQ(moved.second["edits"],
-            OrderedJson::parse(
-                R"([{"kind": "set", "pointer": "/keyframes/1/hands/left/0", "value": 0.22}])"));
+            json_of(R"([{"kind": "set", "pointer": "/keyframes/1/hands/left/0", "value": 0.22}])"));
   const auto far = server.post(
       "pose", {{"time", 1}, {"target", "/keyframes/1/hands/left"}, {"to", {1.5, 0.25, 0.6}}});
   EXPECT_TRUE(far.second["edits"].empty());
@@ -801,10 +794,10 @@ TEST_F(AuthorServer, MovesTargetsAndMirrorsKeyframes) {
   ASSERT_EQ(server.edit(mirrored.second["edits"]).first, 200);
   const std::string now = contents(file);
   EXPECT_NE(now.find("// beside the body"), std::string::npos);
-  const OrderedJson key = OrderedJson::parse(now, nullptr, true, true)["keyframes"][1];
+  const Json key = json_of(now, true)["keyframes"][1];
   EXPECT_FALSE(key["hands"].contains("left")) << key;
-  EXPECT_EQ(key["hands"]["right"], OrderedJson({0.2, -0.25, 0.6})) << key;
-  EXPECT_EQ(key["joints"], OrderedJson({{"l_elbow", -50}})) << key;
+  EXPECT_EQ(key["hands"]["right"], Json({0.2, -0.25, 0.6})) << key;
+  EXPECT_EQ(key["joints"], Json({{"l_elbow", -50}})) << key;
 }
 
 // Expressions, comments and the spacing inside a keyframe stay when it is mirrored.
@@ -829,23 +822,22 @@ TEST_F(AuthorServer, CapturesPosturesAndTheirMirrorImages) {
   ASSERT_EQ(status, 200);
   const auto mirrored =
       server.post("posture", {{"time", 2.4}, {"name", "other"}, {"mirror", true}}).second;
-  const OrderedJson& angles = plain["edits"][0]["value"];
-  const OrderedJson& image = mirrored["edits"][0]["value"];
+  const Json& angles = plain["edits"][0]["value"];
+  const Json& image = mirrored["edits"][0]["value"];
   EXPECT_EQ(angles["l_knee"], image["r_knee"]);
   EXPECT_EQ(angles["r_hip_pitch"], image["l_hip_pitch"]);
   ASSERT_EQ(server.edit(plain["edits"]).first, 200);
-  const OrderedJson state = server.state();
-  EXPECT_EQ(state["own_postures"], OrderedJson({"a b"}));
+  const Json state = server.state();
+  EXPECT_EQ(state["own_postures"], Json({"a b"}));
   EXPECT_TRUE(state["consistent"].get<bool>());
 }
 
-OrderedJson result_of(const Server& server, const std::string& kind,
-                      const OrderedJson& options = OrderedJson::object()) {
+Json result_of(const Server& server, const std::string& kind,
+               const Json& options = Json::object()) {
   const auto [status, answer] = server.post("job", {{"kind", kind}, {"options", options}});
   EXPECT_EQ(status, 200) << answer;
-  return server.state_when([&](const OrderedJson& now) {
-    return now["result"].is_object() && now["result"]["kind"] == kind;
-  });
+  return server.state_when(
+      [&](const Json& now) { return now["result"].is_object() && now["result"]["kind"] == kind; });
 }
 
 // With control, the knees of this hop need more torque at the landing than in open loop.
@@ -870,7 +862,7 @@ TEST_F(AuthorServer, ASimulationSaysWhatIsWorseWithControl) {
 }
 )");
   const Server server(file);
-  const OrderedJson lines = result_of(server, "simulate", {{"law", "both"}})["result"]["lines"];
+  const Json lines = result_of(server, "simulate", {{"law", "both"}})["result"]["lines"];
   ASSERT_EQ(lines.size(), 3u) << lines;
   EXPECT_TRUE(lines[2].get<std::string>().starts_with(
       "some figures are worse with control than in open loop: the largest torque is "))
@@ -880,23 +872,23 @@ TEST_F(AuthorServer, ASimulationSaysWhatIsWorseWithControl) {
 TEST_F(AuthorServer, JobsAnswerOnTheSameTimeline) {
   const Server server(file);
   EXPECT_TRUE(result_of(server, "check")["result"]["good"].get<bool>());
-  const OrderedJson run = result_of(server, "simulate", {{"law", "both"}});
+  const Json run = result_of(server, "simulate", {{"law", "both"}});
   EXPECT_TRUE(run["result"]["good"].get<bool>()) << run["result"];
   EXPECT_EQ(run["result"]["lines"].size(), 2u);
-  EXPECT_EQ(run["motions"], OrderedJson({"plan", "closed_loop", "open_loop"}));
+  EXPECT_EQ(run["motions"], Json({"plan", "closed_loop", "open_loop"}));
   EXPECT_FALSE(run["result"]["marks"].empty()) << "the push";
-  const OrderedJson table = result_of(server, "export");
-  ASSERT_EQ(table["result"]["files"], OrderedJson({"walk_hoap.csv"})) << table["result"];
+  const Json table = result_of(server, "export");
+  ASSERT_EQ(table["result"]["files"], Json({"walk_hoap.csv"})) << table["result"];
   EXPECT_TRUE(fs::exists(folder / "walk_hoap.csv"));
   EXPECT_EQ(result_of(server, "check")["result"]["kind"], "check");
-  EXPECT_EQ(result_of(server, "export")["result"]["files"], OrderedJson({"walk_hoap_2.csv"}));
+  EXPECT_EQ(result_of(server, "export")["result"]["files"], Json({"walk_hoap_2.csv"}));
   // A faulty pattern is repaired, and the text of the repair is accepted.
   save(replaced(R"({ "t": 3.771, "zmp": "left" })",
                 R"({ "t": 3.771, "zmp": "left", "joints": { "l_elbow": -170 } })"));
-  server.state_when([](const OrderedJson& now) { return now["consistent"] == false; });
+  server.state_when([](const Json& now) { return now["consistent"] == false; });
   EXPECT_FALSE(result_of(server, "export")["result"]["good"].get<bool>());
   EXPECT_FALSE(fs::exists(folder / "walk_hoap_3.csv"));
-  const OrderedJson repaired = result_of(server, "repair");
+  const Json repaired = result_of(server, "repair");
   ASSERT_TRUE(repaired["result"]["good"].get<bool>()) << repaired["result"];
   EXPECT_NE(server.get("series?which=repair"), "");
   ASSERT_EQ(
@@ -959,12 +951,12 @@ TEST_F(AuthorServer, ServesTheOtherRobotToo) {
   const std::string other = contents(AYUMI_SOURCE_DIR "/patterns/humanoid30_walk.json");
   write(folder / "h.json", other);
   const Server server(folder / "h.json");
-  const OrderedJson state = server.state();
+  const Json state = server.state();
   ASSERT_TRUE(state["error"].is_null()) << state["error"];
   EXPECT_EQ(state["robot"], "humanoid30");
   EXPECT_EQ(state["replay"]["bodies"].size(), state["replay"]["joints"].size() + 1);
-  for (const OrderedJson& handle : state["handles"]) {
-    const OrderedJson wish = {{"time", 1.0}, {"drag", handle["name"]}, {"to", {0.1, 0.05, 0.6}}};
+  for (const Json& handle : state["handles"]) {
+    const Json wish = {{"time", 1.0}, {"drag", handle["name"]}, {"to", {0.1, 0.05, 0.6}}};
     const auto [status, answer] = server.post("pose", wish);
     EXPECT_EQ(status, 200) << handle << answer;
     EXPECT_TRUE(answer["row"].is_array() || answer["message"].is_string());

@@ -3,9 +3,8 @@
 
 #include <sys/resource.h>
 
-#include <nlohmann/json.hpp>
-
 #include "tests/cli/program.hpp"
+#include "tests/support/json.hpp"
 
 namespace ayumi::test {
 namespace {
@@ -80,15 +79,15 @@ TEST(CertifyCommand, GoesOnAndRefusesOtherStudies) {
   const CertifyStudy study;
   const std::string& whole = CertifyStudy::whole();
   write(study.folder / "cases.json", whole);
-  Json partly = Json::parse(whole);
+  Json partly = json_of(whole);
   for (int i = 0; i < 20; ++i) partly["cases"].erase(3);
   partly["cases"][0][4] = 0.125;  // this result is kept and not simulated again
   write(study.folder / "cases.json", partly.dump());
   ASSERT_EQ(study.certify({"-o", "cases.json"}).exit_code, 1);
-  Json again = Json::parse(contents(study.folder / "cases.json"));
+  Json again = json_of(contents(study.folder / "cases.json"));
   EXPECT_EQ(again["cases"][0][4], 0.125);
-  again["cases"][0][4] = Json::parse(whole)["cases"][0][4];
-  EXPECT_EQ(again, Json::parse(whole));
+  again["cases"][0][4] = json_of(whole)["cases"][0][4];
+  EXPECT_EQ(again, json_of(whole));
   const Output other = study.certify({"-o", "cases.json", "--seed", "2"});
   EXPECT_EQ(other.exit_code, 3);
   EXPECT_NE(other.err.find("the results of another study ('seed' differs)"), std::string::npos)
@@ -101,7 +100,7 @@ TEST(CertifyCommand, RefusesFiguresThatNoSimulationGives) {
        {std::tuple(3, Json(1e308), "case 0 has the figure 1e+308, which no simulation gives"),
         std::tuple(0, Json(-1), "a case has no number"),
         std::tuple(0, Json(1e308), "a case has no number")}) {
-    Json edited = Json::parse(CertifyStudy::whole());
+    Json edited = json_of(CertifyStudy::whole());
     edited["cases"][0][place] = value;
     write(study.folder / "cases.json", edited.dump());
     const Output refused = study.certify({"-o", "cases.json"});
@@ -113,7 +112,7 @@ TEST(CertifyCommand, RefusesFiguresThatNoSimulationGives) {
 // In an earlier version, one case with the largest number took 4.7 GB.
 TEST(CertifyCommand, ACaseWithALargeNumberTakesNoMemory) {
   const CertifyStudy study;
-  Json edited = Json::parse(CertifyStudy::whole());
+  Json edited = json_of(CertifyStudy::whole());
   Json last = edited["cases"][0];
   last[0] = 99'999'999;
   edited["cases"].push_back(last);
@@ -124,7 +123,7 @@ TEST(CertifyCommand, ACaseWithALargeNumberTakesNoMemory) {
   ASSERT_EQ(study.certify({"-o", "cases.json"}).exit_code, 1);
   ::getrusage(RUSAGE_CHILDREN, &after);
   EXPECT_LE(after.ru_maxrss, std::max(before.ru_maxrss, 1'000'000L)) << "kB";
-  EXPECT_EQ(Json::parse(contents(study.folder / "cases.json")), edited) << "the case stays";
+  EXPECT_EQ(json_of(contents(study.folder / "cases.json")), edited) << "the case stays";
 }
 
 // In an earlier version, the comparison with the program's own study descended into these results
@@ -193,12 +192,12 @@ TEST(CertifyCommand, ACaseCanBeSimulatedAlone) {
   const CertifyStudy study;
   write(study.folder / "cases.json", CertifyStudy::whole());
   const Output all = study.certify({"--json", "-o", "cases.json"});
-  const Json worst = Json::parse(all.out).at("worst_cases").at(0);
+  const Json worst = json_of(all.out).at("worst_cases").at(0);
   const std::string number = std::to_string(worst.at("case").get<long>());
   const Output alone = study.run({"simulate", "stand.json", "--quiet", "--study", "study.json",
                                   "--case", number, "--json", "-o", "run"});
   ASSERT_EQ(alone.exit_code, 1) << alone.err;
-  const Json json = Json::parse(alone.out);
+  const Json json = json_of(alone.out);
   EXPECT_EQ(json.at("outcome"), worst.at("outcome"));
   EXPECT_EQ(worst.at("outcome"), "fell");
   EXPECT_EQ(json.at("fell_at_s"), worst.at("fell_at_s"));

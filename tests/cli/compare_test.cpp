@@ -1,10 +1,10 @@
 // `ayumi compare` with a recording made from the log of a run, in which one knee is 0.2 degrees
 // away.
 
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "tests/cli/program.hpp"
+#include "tests/support/json.hpp"
 
 namespace ayumi::test {
 namespace {
@@ -56,7 +56,7 @@ TEST(CompareCommand, NumbersPictureAndReport) {
   const Output out = ayumi({"compare", "out", "m.csv", "--shift", "0", "--json", "-q", "--plot",
                             "c.svg", "--report", "c.html"});
   ASSERT_EQ(out.exit_code, 0) << out.err;
-  const Json json = Json::parse(out.out);
+  const Json json = json_of(out.out);
   EXPECT_EQ(json.at("shift_s"), 0);
   EXPECT_NEAR(json.at("joint_max_rad"), knee, 1e-5);
   for (const Json& joint : json.at("joints"))
@@ -152,7 +152,7 @@ TEST(IdentifyCommand, TheNextTableCompensatesTheOffsetThatWasFound) {
                      column_of(contents(folder / command), "t").size()));
     ayumi({"identify", robot, "--command", command, "--measured", "measured.csv", "--measured-at",
            at, "-o", "found.json", "--force", "-q"});
-    const Json sidecar = Json::parse(contents(folder / "found.json"));
+    const Json sidecar = json_of(contents(folder / "found.json"));
     EXPECT_EQ(sidecar.at("profiles").at(0).at("name"), "hoap1");
     double knee = 0;
     for (const Json& group : sidecar.at("profiles").at(0).at("servos")) {

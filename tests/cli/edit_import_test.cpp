@@ -4,10 +4,10 @@
 
 #include <chrono>
 #include <cstdlib>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "tests/cli/program.hpp"
+#include "tests/support/json.hpp"
 
 namespace ayumi::test {
 namespace {
@@ -25,7 +25,7 @@ class Edit : public testing::Test {
 TEST_F(Edit, BakedMotionIsTheSameMotion) {
   const Output baked = ayumi({"edit", "bake", kWalk, "-o", "baked.json", "--json"});
   ASSERT_EQ(baked.exit_code, 0) << baked.out << baked.err;
-  const Json json = Json::parse(baked.out);
+  const Json json = json_of(baked.out);
   EXPECT_EQ(json["check"]["verdict"], "consistent");
   EXPECT_EQ(json["table"], "baked.csv");
   EXPECT_EQ(folder.files(), (std::vector<std::string>{"baked.csv", "baked.json"}));
@@ -90,7 +90,7 @@ TEST_F(Edit, RetimeToLimitsIsTheFastestThatPasses) {
   const Output out =
       ayumi({"edit", "retime", kWalk, "--to-limits", "-o", "fast.json", "--json", "-q"});
   ASSERT_EQ(out.exit_code, 0) << out.out << out.err;
-  const Json json = Json::parse(out.out);
+  const Json json = json_of(out.out);
   const double scale = json["scale"];
   EXPECT_LT(scale, 1);
   EXPECT_FALSE(json["limited_by"].is_null());
@@ -110,7 +110,7 @@ TEST_F(Edit, RetimeLocallyIsQuicker) {
     options.insert(options.begin(), {"edit", "retime", kWalk, "--to-limits", "--json", "-q"});
     const Output out = ayumi(options);
     EXPECT_EQ(out.exit_code, 0) << out.out << out.err;
-    return Json::parse(out.out);
+    return json_of(out.out);
   };
   const Json uniform = retimed({"-o", "uniform.json"});
   const Json local = retimed({"--local", "-o", "local.json"});
@@ -143,7 +143,7 @@ TEST_F(Edit, RetimeKeepsPausesWhereAsked) {
     words.insert(words.end(), more.begin(), more.end());
     const Output made = ayumi(words);
     EXPECT_EQ(made.exit_code, 0) << made.out << made.err;
-    return Json::parse(made.out);
+    return json_of(made.out);
   };
   const auto paused = [](const Json& json) {
     double share = 0;
@@ -171,9 +171,9 @@ TEST_F(Edit, TheCycleOfAWalkIsRepeated) {
     words.insert(words.end(), more.begin(), more.end());
     const Output made = ayumi(words);
     EXPECT_EQ(made.exit_code, exit_code) << made.out << made.err;
-    return Json::parse(made.out);
+    return json_of(made.out);
   };
-  const Json whole = Json::parse(ayumi({"check", kWalk, "--json", "-q"}).out);
+  const Json whole = json_of(ayumi({"check", kWalk, "--json", "-q"}).out);
   const Json once = looped("once.json", {"--times", "1"}, 0);
   const Json thrice = looped("thrice.json", {"--times", "3"}, 0);
   const double cycle = double(once["cycle_s"][1]) - double(once["cycle_s"][0]);
@@ -210,14 +210,14 @@ TEST_F(Edit, MotionsJoin) {
   const Output out =
       ayumi({"edit", "concat", "squat.json", "squat.json", "-o", "two.json", "--json"});
   ASSERT_EQ(out.exit_code, 0) << out.out << out.err;
-  const Json json = Json::parse(out.out);
+  const Json json = json_of(out.out);
   EXPECT_EQ(json["check"]["verdict"], "consistent");
   const double once = json["joins_s"][0];
   EXPECT_NEAR(double(json["duration_s"]), 2 * once, 1e-9);
   const Output blended = ayumi(
       {"edit", "blend", "walk.json", "squat.json", "--over", "0.5", "-o", "b.json", "--json"});
   ASSERT_EQ(blended.exit_code, 0) << blended.out << blended.err;
-  EXPECT_EQ(Json::parse(blended.out)["check"]["verdict"], "consistent");
+  EXPECT_EQ(json_of(blended.out)["check"]["verdict"], "consistent");
 }
 
 // Five times needs joins of one, two and four repetitions.
@@ -227,7 +227,7 @@ TEST_F(Edit, ALoopHasTheGivenNumberOfRepetitions) {
     const Output out = ayumi({"edit", "loop", "squat.json", "--times", times, "-o", "many.json",
                               "--force", "--json", "-q"});
     EXPECT_EQ(out.exit_code, 0) << out.out << out.err;
-    return Json::parse(out.out);
+    return json_of(out.out);
   };
   const double once = looped("1")["duration_s"];
   for (const int times : {2, 3, 5}) {
@@ -243,7 +243,7 @@ TEST_F(Edit, ALoopKeepsTheKeysOfAFoot) {
   const Output out =
       ayumi({"edit", "loop", "kick.json", "--times", "2", "-o", "kicks.json", "--json"});
   ASSERT_EQ(out.exit_code, 0) << out.out << out.err;
-  const Json json = Json::parse(out.out);
+  const Json json = json_of(out.out);
   EXPECT_EQ(json["keys_kept"], true) << out.out;
   EXPECT_EQ(json["check"]["verdict"], "consistent");
   EXPECT_EQ(json["lost"], Json::array()) << "the comments of the kick stay";
@@ -280,7 +280,7 @@ TEST_F(Edit, SaysWhichWordsAreNotMirrored) {
             std::string::npos)
       << said.out;
   const auto lines = [&](const std::vector<std::string>& arguments) {
-    return Json::parse(ayumi(arguments).out)["sides_not_mirrored"];
+    return json_of(ayumi(arguments).out)["sides_not_mirrored"];
   };
   EXPECT_EQ(
       lines({"edit", "key", "lift.json", "--at", "1.5", "--mirror", "-o", "k.json", "--json"}),
@@ -315,9 +315,8 @@ TEST_F(Edit, RampsComeFromAPosture) {
   const Output out = ayumi({"edit", "ramp", "sway.json", "--in", "0.8", "--back", "0.5",
                             "--posture", "home", "-o", "r.json", "--json"});
   ASSERT_EQ(out.exit_code, 0) << out.out << out.err;
-  const Json before =
-      Json::parse(ayumi({"edit", "bake", "sway.json", "-o", "s.json", "--json"}).out);
-  EXPECT_NEAR(double(Json::parse(out.out)["duration_s"]), double(before["duration_s"]) + 1.3, 1e-9);
+  const Json before = json_of(ayumi({"edit", "bake", "sway.json", "-o", "s.json", "--json"}).out);
+  EXPECT_NEAR(double(json_of(out.out)["duration_s"]), double(before["duration_s"]) + 1.3, 1e-9);
 }
 
 TEST_F(Edit, WhatDoesNotJoinIsRefused) {
@@ -347,7 +346,7 @@ TEST_F(Edit, SequencesComeBack) {
   ASSERT_EQ(ayumi({"export", kWalk, "--format", "hoap", "-o", "walk.csv"}).exit_code, 0);
   const Output out = ayumi({"import", "walk.csv", "--robot", "hoap1", "-o", "back.json", "--json"});
   ASSERT_EQ(out.exit_code, 0) << out.out << out.err;
-  const Json json = Json::parse(out.out);
+  const Json json = json_of(out.out);
   EXPECT_EQ(json["format"], "hoap");
   // The contacts are eight steps, a closing step, and the places where both feet stood before.
   EXPECT_EQ(json["contacts"].size(), 11u) << out.out;
@@ -362,9 +361,9 @@ TEST_F(Edit, SequencesComeBack) {
   EXPECT_NE(own.err.find("the result would overwrite this file"), std::string::npos) << own.err;
   const Output checked = ayumi({"check", "back.json", "--json"});
   EXPECT_TRUE(checked.exit_code == 0 || checked.exit_code == 1) << checked.err;
-  const Json summary = Json::parse(checked.out)["summary"];
-  EXPECT_LT(summary["max_foot_slip_m"], 0.004);
-  EXPECT_LT(summary["max_foot_penetration_m"], 0.004);
+  const Json summary = json_of(checked.out)["summary"];
+  EXPECT_LT(double(summary["max_foot_slip_m"]), 0.004);
+  EXPECT_LT(double(summary["max_foot_penetration_m"]), 0.004);
 }
 
 // Recorded sequences begin with a count per row, which is fast for a robot at rest. They are
@@ -389,7 +388,7 @@ TEST_F(Edit, ImportedSequencesBeginAndEndAtRest) {
   write(folder / "sent.csv", rows);
   const Output out = ayumi({"import", "sent.csv", "--robot", "hoap1", "-o", "bow.json"});
   ASSERT_EQ(out.exit_code, 0) << out.err;
-  const Json check = Json::parse(ayumi({"check", "bow.json", "--json"}).out);
+  const Json check = json_of(ayumi({"check", "bow.json", "--json"}).out);
   for (const Json& f : check["findings"])
     EXPECT_TRUE(f["at_s"] > 0.05 && f["at_s"] < 1.95) << f.dump();
   EXPECT_EQ(check["verdict"], "consistent") << check.dump(1);

@@ -1,8 +1,7 @@
 // `ayumi export` as a person or a script uses it.
 
-#include <nlohmann/json.hpp>
-
 #include "tests/cli/program.hpp"
+#include "tests/support/json.hpp"
 
 namespace ayumi::test {
 namespace {
@@ -42,7 +41,7 @@ class Export : public testing::Test {
 TEST_F(Export, HoapSequenceKeepsTheSpeedCapFromHomeToHold) {
   const Output output = ayumi({"p.json", "--format", "hoap", "-o", "h.csv", "--json"});
   ASSERT_EQ(output.exit_code, 0) << output.err;
-  const auto json = nlohmann::json::parse(output.out);
+  const auto json = json_of(output.out);
   const auto rows = lines("h.csv");
   EXPECT_EQ(json.at("format"), "hoap");
   EXPECT_EQ(json.at("rows"), rows.size());
@@ -92,7 +91,7 @@ TEST_F(Export, UnsafeTablesAreRefused) {
   const Output refused = ayumi({"bad.csv", "--format", "hoap", "-o", "h.csv", "--json"});
   EXPECT_EQ(refused.exit_code, 1) << refused.err;
   EXPECT_FALSE(fs::exists(folder.path() / "h.csv"));
-  const auto violation = nlohmann::json::parse(refused.out).at("safety").at("violations").at(0);
+  const auto violation = json_of(refused.out).at("safety").at("violations").at(0);
   EXPECT_EQ(violation.at("kind"), "step");
   EXPECT_EQ(violation.at("joint"), "r_hip_yaw");
   EXPECT_NEAR(violation.at("at_s").get<double>(), 2.5, 1e-9);
@@ -119,10 +118,10 @@ TEST_F(Export, TablesAreAtTheServoPeriodOfTheRobot) {
       {"new", "stand", "--robot", "slow", "--duration", "0.501", "-o", "s.json", "--json"},
       folder.path());
   ASSERT_EQ(made.exit_code, 0) << made.err;
-  EXPECT_NEAR(nlohmann::json::parse(made.out).at("duration_s").get<double>(), 0.502, 1e-9);
+  EXPECT_NEAR(json_of(made.out).at("duration_s").get<double>(), 0.502, 1e-9);
   const Output output = ayumi({"s.json", "--format", "hoap", "-o", "h.csv", "--json"});
   ASSERT_EQ(output.exit_code, 0) << output.err << output.out;
-  EXPECT_EQ(nlohmann::json::parse(output.out).at("rate_hz"), 500);
+  EXPECT_EQ(json_of(output.out).at("rate_hz"), 500);
   EXPECT_EQ(cells(lines("h.csv").front()).front(), "2");
 }
 
@@ -134,7 +133,7 @@ TEST_F(Export, APatternIsJudgedByItsOwnTolerances) {
   write(folder.path() / "strict.json", strict);
   const Output refused = ayumi({"strict.json", "--format", "csv", "-o", "b.csv", "--json"});
   EXPECT_EQ(refused.exit_code, 1) << refused.out << refused.err;
-  const std::string reason = nlohmann::json::parse(refused.out).at("refused").at(0);
+  const std::string reason = json_of(refused.out).at("refused").at(0);
   EXPECT_EQ(reason.find("the pattern is inconsistent: joint_speed"), 0u) << reason;
   EXPECT_FALSE(fs::exists(folder.path() / "b.csv"));
 }
@@ -199,7 +198,7 @@ TEST_F(Export, HoapNamesTheTorqueBeyondTheRobotsOwnMotors) {
   const Output output = ayumi({"j.json", "--format", "hoap", "-o", "j.csv", "--json"});
   EXPECT_EQ(output.exit_code, 1);
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "j.csv"));
-  const auto json = nlohmann::json::parse(output.out);
+  const auto json = json_of(output.out);
   EXPECT_EQ(json.at("profile"), "hoap1");
   bool named = false;
   for (const auto& v : json.at("safety").at("violations"))
@@ -345,7 +344,7 @@ TEST_F(Export, RampAndHoldAroundAnImportedSequence) {
   const Output output = ayumi(
       {"i.json", "--format", "hoap", "-o", "b.csv", "--ramp", "1", "--hold", "0.1", "--json"});
   ASSERT_EQ(output.exit_code, 0) << output.out << output.err;
-  const auto json = nlohmann::json::parse(output.out);
+  const auto json = json_of(output.out);
   EXPECT_EQ(json.at("interval_ms"), 2);
   EXPECT_EQ(json.at("imported_rows_unchanged"), true);
   const std::string made = contents(folder.path() / "b.csv");
@@ -369,7 +368,7 @@ TEST_F(Export, AChangedImportedSequenceIsComputed) {
   write(folder.path() / "i.csv", table);
   const Output output =
       ayumi({"i.json", "--format", "hoap", "-o", "b.csv", "--force-unsafe", "--json"});
-  const auto json = nlohmann::json::parse(output.out);
+  const auto json = json_of(output.out);
   EXPECT_EQ(json.at("imported_rows_unchanged"), false);
   EXPECT_EQ(json.at("interval_ms"), 2);
   write(folder.path() / "i.sequence.csv", "1,2\n");

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstring>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "ayumi/base/text.hpp"
@@ -12,6 +11,7 @@
 #include "ayumi/io/run/run_folder.hpp"
 #include "ayumi/io/run/simulation_log_file.hpp"
 #include "tests/cli/program.hpp"
+#include "tests/support/json.hpp"
 
 namespace ayumi::test {
 namespace {
@@ -52,7 +52,7 @@ TEST(GainsCommand, PolesGiveKAndD) {
   const Output made = run({"gains", "hoap1", "--time-constants", "0.2,0.5", "--absorb", "0.6",
                            "--return-time", "0.1", "--json"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
-  const Json json = Json::parse(made.out);
+  const Json json = json_of(made.out);
   const double w = json["omega_1_s"];
   EXPECT_NEAR(w, std::sqrt(9.80665 / 0.245), 1e-3);
   EXPECT_NEAR(json["K"].get<double>(), 1 + 5.0 * 2.0 / (w * w), 1e-9);
@@ -69,7 +69,7 @@ TEST(GainsCommand, PolesGiveKAndD) {
 TEST(GainsCommand, AConjugatePair) {
   const Output made = run({"gains", "hoap1", "--frequency", "1", "--damping", "0.7", "--json"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
-  const Json json = Json::parse(made.out);
+  const Json json = json_of(made.out);
   const double w = json["omega_1_s"], p = 2 * M_PI;
   EXPECT_NEAR(json["K"].get<double>(), 1 + p * p / (w * w), 1e-9);
   EXPECT_NEAR(json["D_s"].get<double>(), 2 * 0.7 * p / (w * w), 1e-9);
@@ -105,7 +105,7 @@ TEST(GainsCommand, WhatItRefusesIsNotRunUnlessAsked) {
   const auto outcome = [&](const std::vector<std::string>& more) {
     std::vector<std::string> words = simulate;
     words.insert(words.end(), more.begin(), more.end());
-    return Json::parse(run(words).out)["outcome"].get<std::string>();
+    return json_of(run(words).out)["outcome"].get<std::string>();
   };
   EXPECT_FALSE(outcome({"--gain", "ka=40", "--allow-unstable"}).empty());
   EXPECT_EQ(outcome({"--controller", "dtad-literal", "--profile", "hoap1-soft"}),
@@ -124,7 +124,7 @@ TEST(TuneCommand, BettersItsObjectiveTheSameWayForAnyNumberOfThreads) {
       "--level", "0.8",        "--quiet",      "--json", "--threads", "1"};
   const Output first = run_here(command);
   ASSERT_EQ(first.exit_code, 0) << first.err;
-  const Json json = Json::parse(first.out);
+  const Json json = json_of(first.out);
   EXPECT_EQ(json["start"]["ka"], 0.3);
   EXPECT_LT(json["after"]["objective"].get<double>(), json["before"]["objective"].get<double>());
   EXPECT_NE(json["gains"], json["start"]);
@@ -136,13 +136,12 @@ TEST(TuneCommand, BettersItsObjectiveTheSameWayForAnyNumberOfThreads) {
   command.insert(command.end(), {"-o", "tuned.json"});
   const Output written = run_here(command);
   ASSERT_EQ(written.exit_code, 0) << written.err;
-  EXPECT_EQ(Json::parse(written.out)["output"], "tuned.json");
+  EXPECT_EQ(json_of(written.out)["output"], "tuned.json");
   const std::string text = contents(folder / "tuned.json");
   EXPECT_EQ(text.rfind("// Mine.\n", 0), 0u);
-  const Json tuned = Json::parse(text, nullptr, true, true);
-  EXPECT_EQ(tuned["controller"]["gains"], Json::parse(written.out)["gains"]);
-  EXPECT_EQ(tuned["keyframes"],
-            Json::parse(contents(folder / "stand.json"), nullptr, true, true)["keyframes"]);
+  const Json tuned = json_of(text, true);
+  EXPECT_EQ(tuned["controller"]["gains"], json_of(written.out)["gains"]);
+  EXPECT_EQ(tuned["keyframes"], json_of(contents(folder / "stand.json"), true)["keyframes"]);
   EXPECT_EQ(run_here(command).exit_code, 3);  // the file exists
   const Output wrong = run_here({"tune", "stand.json", "--tune", "kb"});
   EXPECT_EQ(wrong.exit_code, 2);
@@ -167,8 +166,8 @@ TEST(ExplainCommand, WordsAndTheNumbersOfARun) {
   for (int n = 1; n <= 29; ++n) {
     const Output each = run_here({"explain", std::to_string(n), "run@0.2", "--json"});
     ASSERT_EQ(each.exit_code, 0) << n << each.err;
-    EXPECT_EQ(Json::parse(each.out)["equation"], n);
-    formulas.insert(Json::parse(each.out)["formula"]);
+    EXPECT_EQ(json_of(each.out)["equation"], n);
+    formulas.insert(json_of(each.out)["formula"]);
   }
   EXPECT_EQ(formulas.size(), 29u);
   EXPECT_EQ(
@@ -263,7 +262,7 @@ TEST(ExplainCommand, EveryNumberIsTheLogsOwn) {
                 ? run_program({"explain", "14", "run@" + text::exact(t), "--json"}, folder.path())
                 : explained(n, folder, log.dt, true);
         ASSERT_EQ(each.exit_code, 0) << each.err;
-        const Json json = Json::parse(each.out);
+        const Json json = json_of(each.out);
         for (const Json& value : json.at("values")) {
           ++values;
           const std::string name = value.at("name");

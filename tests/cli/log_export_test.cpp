@@ -2,10 +2,10 @@
 
 #include <cmath>
 #include <map>
-#include <nlohmann/json.hpp>
 
 #include "ayumi/io/run/run_folder.hpp"
 #include "tests/cli/program.hpp"
+#include "tests/support/json.hpp"
 
 namespace ayumi::test {
 namespace {
@@ -69,7 +69,7 @@ Folder* LogExport::folder = nullptr;
 TEST_F(LogExport, CsvHasAllColumnsOfTheLog) {
   const Output output = ayumi({"run", "--format", "csv-log", "--json", "-o", "all.csv"});
   ASSERT_EQ(output.exit_code, 0) << output.err;
-  const auto json = nlohmann::json::parse(output.out);
+  const auto json = json_of(output.out);
   auto table = columns("all.csv");
   EXPECT_EQ(json.at("rows"), table.at("t[s]").size());
   EXPECT_EQ(json.at("columns").size(), table.size());
@@ -82,7 +82,7 @@ TEST_F(LogExport, CsvHasAllColumnsOfTheLog) {
   // The header of the log names its columns, and the export has all of them.
   const std::string log = contents(folder->path() / "run/log_closed_loop.bin");
   const size_t begin = log.find("\"columns\":[") + 10, end = log.find("],\"rows\"", begin) + 1;
-  const auto logged = nlohmann::json::parse(log.substr(begin, end - begin));
+  const auto logged = json_of(log.substr(begin, end - begin));
   EXPECT_GT(logged.size(), 200u);
   for (const auto& name : logged) EXPECT_TRUE(table.contains(name)) << name;
 }
@@ -122,7 +122,7 @@ TEST_F(LogExport, NumpyReadsTheArchiveWithoutPickle) {
                                   folder->path(), python);
   EXPECT_EQ(said.exit_code, 0) << said.err;
   EXPECT_NE(said.out.find("arrays agree"), std::string::npos) << said.out;
-  const auto arrays = nlohmann::json::parse(output.out).at("arrays");
+  const auto arrays = json_of(output.out).at("arrays");
   EXPECT_EQ(arrays.at(0).at("name"), "t");
   EXPECT_EQ(arrays.at(1).at("shape").at(1), 7);
 }
@@ -142,7 +142,7 @@ TEST_F(LogExport, FoxgloveReadsTheMcap) {
                     folder->path(), "/usr/bin/env");
     EXPECT_EQ(said.exit_code, 0) << said.out << said.err;
     EXPECT_NE(said.out.find(" agree"), std::string::npos) << said.out;
-    const auto topics = nlohmann::json::parse(output.out).at("topics");
+    const auto topics = json_of(output.out).at("topics");
     std::map<std::string, nlohmann::json> by_name;
     for (const auto& topic : topics) by_name[topic.at("topic")] = topic;
     EXPECT_EQ(by_name.at("/tf").at("schema"), "foxglove.FrameTransforms");

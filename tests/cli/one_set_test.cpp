@@ -8,11 +8,11 @@
 
 #include <cstdlib>
 #include <map>
-#include <nlohmann/json.hpp>
 
 #include "ayumi/io/pattern/pattern_table.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/support/faulty_patterns.hpp"
+#include "tests/support/json.hpp"
 
 namespace ayumi::test {
 namespace {
@@ -67,7 +67,7 @@ class OneSet : public testing::Test {
     ASSERT_TRUE(output.exit_code == 0 || output.exit_code == 4) << what << output.err;
     EXPECT_TRUE(output.exit_code == 0 || !good) << what;
     if (good || output.exit_code == 4) return;
-    EXPECT_EQ(nlohmann::json::parse(output.out).at("status"), "repaired") << what;
+    EXPECT_EQ(json_of(output.out).at("status"), "repaired") << what;
     ++counts.repaired;
     const bool still_good = consistent(name + "r.json"), still = accepted(name + "r.json");
     EXPECT_TRUE(still_good) << what;

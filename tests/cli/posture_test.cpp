@@ -3,9 +3,9 @@
 #include <sys/resource.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "tests/cli/program.hpp"
+#include "tests/support/json.hpp"
 
 namespace ayumi::test {
 namespace {
@@ -20,7 +20,7 @@ class PostureCommand : public testing::Test {
   Json postures(const std::string& source) {
     const Output output = ayumi({"posture", "list", source, "--json"});
     EXPECT_EQ(output.exit_code, 0) << output.err;
-    return Json::parse(output.out)["postures_rad"];
+    return json_of(output.out)["postures_rad"];
   }
   Output adjust(const std::string& value, const std::string& name) {
     return ayumi(

@@ -1,9 +1,8 @@
 // `ayumi push` gives the same for any number of threads, continues where it was stopped, and draws
 // its map.
 
-#include <nlohmann/json.hpp>
-
 #include "tests/cli/program.hpp"
+#include "tests/support/json.hpp"
 
 namespace ayumi::test {
 namespace {
@@ -47,7 +46,7 @@ TEST(PushCommand, GoesOnFromItsResultsForAnyNumberOfThreads) {
   ASSERT_EQ(first.exit_code, 0) << first.err;
   EXPECT_NE(first.out.find("during the pattern: dtad worst"), std::string::npos) << first.out;
   const std::string whole = contents(study.folder / "results.json");
-  Json partly = Json::parse(whole);
+  Json partly = json_of(whole);
   ASSERT_EQ(partly["cases"].size(), 2u);
   for (const Json& c : partly["cases"]) {
     EXPECT_GT(c["bound_Ns"].get<double>(), 1.5);
@@ -59,10 +58,10 @@ TEST(PushCommand, GoesOnFromItsResultsForAnyNumberOfThreads) {
   std::vector<std::string> again = study.command;
   again.back() = "2";
   ASSERT_EQ(study.run(again).exit_code, 0);
-  Json joined = Json::parse(contents(study.folder / "results.json"));
+  Json joined = json_of(contents(study.folder / "results.json"));
   EXPECT_EQ(joined["cases"][1]["open_loop"]["runs"], 1234);
-  joined["cases"][1]["open_loop"]["runs"] = Json::parse(whole)["cases"][1]["open_loop"]["runs"];
-  EXPECT_EQ(joined, Json::parse(whole));
+  joined["cases"][1]["open_loop"]["runs"] = json_of(whole)["cases"][1]["open_loop"]["runs"];
+  EXPECT_EQ(joined, json_of(whole));
 
   const Output other = study.run(study.command, {"--gain", "ka=1"});
   EXPECT_EQ(other.exit_code, 3);
@@ -76,7 +75,7 @@ TEST(PushCommand, GoesOnFromItsResultsForAnyNumberOfThreads) {
         std::pair("/cases/0/direction_rad", 1e308),
         std::pair("/cases/0/open_loop/impulse_Ns", -1.0),
         std::pair("/cases/0/limits/0/impulse_Ns", 1e308)}) {
-    Json edited = Json::parse(whole);
+    Json edited = json_of(whole);
     edited[Json::json_pointer(place)] = value;
     write(study.folder / "results.json", edited.dump());
     const Output refused = study.run(study.command);
@@ -109,11 +108,11 @@ TEST(PushCommand, DrawsItsMapAndPrintsJson) {
   EXPECT_FALSE(fs::exists(study.folder / "results.json")) << "told before the work";
   const Output good = study.run(study.command, {"--map", "map.svg", "--json"});
   ASSERT_EQ(good.exit_code, 0) << good.err;
-  const Json json = Json::parse(good.out);
+  const Json json = json_of(good.out);
   EXPECT_EQ(json["thresholds"].size(), 2u);
   EXPECT_GT(json["worst_ratio"].get<double>(), 0.8);
   // J/m and J/(m sqrt(g z)) follow from the robot's mass and the height of its COG.
-  const Json stored = Json::parse(contents(study.folder / "results.json"))["cases"][0];
+  const Json stored = json_of(contents(study.folder / "results.json"))["cases"][0];
   const double mass = stored["mass_kg"], height = stored["height_m"];
   EXPECT_NEAR(mass, 6, 1);
   EXPECT_NEAR(height, 0.245, 0.005);

@@ -1,9 +1,9 @@
 // `ayumi replay` and `ayumi export --sign-test`: tables as the robot receives them.
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "tests/cli/program.hpp"
+#include "tests/support/json.hpp"
 
 namespace ayumi::test {
 namespace {
@@ -33,7 +33,7 @@ class Replay : public testing::Test {
     const Output out = ayumi(
         {"export", "hoap1", "--sign-test", "--format", format, "-o", "signs", "--json", "-q"});
     EXPECT_EQ(out.exit_code, 0) << out.err;
-    return out.exit_code == 0 ? Json::parse(out.out).at("tests") : Json::array();
+    return out.exit_code == 0 ? json_of(out.out).at("tests") : Json::array();
   }
   /// The largest distance of an angle between two tables of the same length [rad].
   double distance(const std::string& a, const std::string& b) {
@@ -76,7 +76,7 @@ TEST_F(Replay, WhatWasExportedStands) {
     if (file != "h.csv") words.resize(4);  // the head of the table names the robot
     const Output out = ayumi(words);
     ASSERT_EQ(out.exit_code, 0) << file << out.err << out.out;
-    const Json json = Json::parse(out.out);
+    const Json json = json_of(out.out);
     EXPECT_EQ(json.at("verdict"), "stands");
     EXPECT_EQ(json.at("clamps").size(), 0u) << out.out;
     for (const auto& [plant, run] : json.at("plants").items()) {
@@ -122,13 +122,13 @@ TEST_F(Replay, JumpsAreClampedAndFallsAreFound) {
   const Output jump =
       ayumi({"replay", "jump.csv", "--robot", "hoap1", "--plant", "ayumi", "--json"});
   ASSERT_EQ(jump.exit_code, 0) << jump.err << jump.out;
-  const Json clamp = Json::parse(jump.out).at("clamps").at(0);
+  const Json clamp = json_of(jump.out).at("clamps").at(0);
   EXPECT_EQ(clamp.at("kind"), "speed");
   EXPECT_NEAR(clamp.at("change_rad"), 943 / 209.0 * 3.14159265 / 180, 1e-6);
   write(folder / "lean.csv", rows(4, 14, 4500));  // both ankles are turned by 21 degrees
   const Output lean = ayumi({"replay", "lean.csv", "--robot", "hoap1", "-o", "out", "--json"});
   EXPECT_EQ(lean.exit_code, 1) << lean.err << lean.out;
-  EXPECT_EQ(Json::parse(lean.out).at("plants").at("ayumi").at("outcome"), "fell");
+  EXPECT_EQ(json_of(lean.out).at("plants").at("ayumi").at("outcome"), "fell");
   EXPECT_TRUE(fs::exists(folder / "out/run.json"));
   EXPECT_TRUE(fs::exists(folder / "out/log_ayumi.bin"));
 }
@@ -417,7 +417,7 @@ TEST(RecordedReplay, ARecordedWalkOfARealRobot) {
                    "--robot-path", data + "/hoap3_description", "--json", "-q"},
                   folder.path());
   ASSERT_EQ(compared.exit_code, 0) << compared.err;
-  const Json json = Json::parse(compared.out);
+  const Json json = json_of(compared.out);
   EXPECT_LT(json.at("joint_mean_rad"), 0.05 * M_PI / 180);
   EXPECT_LT(json.at("joint_max_rad"), 0.2 * M_PI / 180);
   EXPECT_GT(json.at("end_s"), 17.8);

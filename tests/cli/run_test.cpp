@@ -5,9 +5,9 @@
 #include <sys/stat.h>
 
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "tests/cli/program.hpp"
+#include "tests/support/json.hpp"
 
 namespace ayumi::test {
 namespace {
@@ -85,7 +85,7 @@ TEST_F(Run, TheTableIsThatOfTheRunWithoutDisturbances) {
   EXPECT_EQ(rows("out/reference.csv"), table);
   EXPECT_EQ(contents(folder / "out/hoap.csv"), hoap);
   EXPECT_NE(rows("out/reference_pushed.csv"), table);
-  const Json said = Json::parse(pushed.out);
+  const Json said = json_of(pushed.out);
   EXPECT_EQ(said.at("undisturbed").at("outcome"), "stands");
   EXPECT_EQ(said.at("simulate").at("closed_loop").at("outcome"), "stands");
   EXPECT_EQ(contents(folder / "out/reference.csv").find("disturbances"), std::string::npos);
@@ -163,7 +163,7 @@ TEST_F(Run, TheTableOfAPushedRunIsExportedWithPushedOnlyAndSaysSo) {
   }
   fs::remove(folder / "t");
   ASSERT_EQ(exported({"--pushed"}, "json").exit_code, 0);
-  EXPECT_EQ(Json::parse(contents(folder / "t")).at("disturbances"), "0.5 N s on cog at 0.5 s");
+  EXPECT_EQ(json_of(contents(folder / "t")).at("disturbances"), "0.5 N s on cog at 0.5 s");
 }
 
 // If a table becomes a pattern, the caution stays with it.
@@ -191,7 +191,7 @@ TEST_F(Run, ARunThatFellGivesNoTableForARobot) {
   write(folder / "hard.json", arm_up(kTooHard));
   const Output fell = run("hard.json", {"--json"});
   EXPECT_EQ(fell.exit_code, 1);
-  const Json said = Json::parse(fell.out);
+  const Json said = json_of(fell.out);
   ASSERT_EQ(said.at("simulate").at("closed_loop").at("outcome"), "fell");
   ASSERT_EQ(said.at("undisturbed").at("outcome"), "stands");
   EXPECT_FALSE(fs::exists(folder / "out/hoap.csv"));
@@ -231,7 +231,7 @@ TEST_F(Run, AnInconsistentPatternGivesNoTableForARobot) {
   const Output of_pattern =
       ayumi({"export", "fast.json", "--format", "csv", "-o", "t", "-q", "--json"});
   EXPECT_EQ(of_pattern.exit_code, 1) << of_pattern.err;
-  const std::string reason = Json::parse(of_pattern.out).at("refused").at(0);
+  const std::string reason = json_of(of_pattern.out).at("refused").at(0);
   EXPECT_EQ(reason.find("the pattern is inconsistent: "), 0u) << reason;
   EXPECT_FALSE(fs::exists(folder / "t"));
 }
@@ -241,7 +241,7 @@ TEST_F(Run, ExplainSaysWhereTheTracksOfTheRunComeFrom) {
   const Output people = ayumi({"explain", "18", "out@0.5"});
   ASSERT_EQ(people.exit_code, 0) << people.err;
   EXPECT_NE(people.out.find("  sampled from\n    joints "), std::string::npos) << people.out;
-  const Json json = Json::parse(ayumi({"explain", "18", "out@0.5", "--json"}).out);
+  const Json json = json_of(ayumi({"explain", "18", "out@0.5", "--json"}).out);
   for (const char* track : {"joints", "base", "cog", "zmp"})
     EXPECT_TRUE(json.at("sampled_from").contains(track)) << track;
 }

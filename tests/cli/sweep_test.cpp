@@ -4,10 +4,10 @@
 #include <signal.h>
 #include <sqlite3.h>
 
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "tests/cli/program.hpp"
+#include "tests/support/json.hpp"
 
 namespace ayumi::test {
 namespace {
@@ -59,7 +59,7 @@ std::string read_csv(const Sweep& s, const std::string& database) {
   const Output out = s.sweep({"-o", database, "--csv", "read.csv", "--json"});
   EXPECT_EQ(out.exit_code, 0) << out.err;
   if (out.exit_code == 0) {
-    EXPECT_EQ(Json::parse(out.out).at("run_now"), 0);
+    EXPECT_EQ(json_of(out.out).at("run_now"), 0);
   }
   return contents(s.folder / "read.csv");
 }
@@ -142,7 +142,7 @@ TEST(SweepCommand, GoesOnAfterKill) {
   for (int i = 0; i < 600 && seen == 0; ++i) {
     ::usleep(50000);
     const Output status = s.run({"sweep", "status", "k.db", "--json"});
-    if (status.exit_code == 0) seen = Json::parse(status.out).at("done");
+    if (status.exit_code == 0) seen = json_of(status.out).at("done");
   }
   ::kill(child, SIGKILL);
   ::waitpid(child, nullptr, 0);
@@ -150,7 +150,7 @@ TEST(SweepCommand, GoesOnAfterKill) {
   ASSERT_LT(seen, 120);
   const Output again = s.sweep({"-o", "k.db", "--json"});
   ASSERT_EQ(again.exit_code, 0) << again.err;
-  const Json found = Json::parse(again.out);
+  const Json found = json_of(again.out);
   EXPECT_EQ(found.at("done"), 120);
   EXPECT_LE(found.at("run_now").get<long>() + seen, 120);
   EXPECT_EQ(read_csv(s, "k.db"), s.csv("fresh.db"));
@@ -168,8 +168,8 @@ TEST(SweepCommand, RecordsFailuresAndRunsThemAgain) {
       << first.out;
   EXPECT_NE(contents(s.folder / "r.xml").find("<failure message=\"errors = 1\">"),
             std::string::npos);
-  EXPECT_EQ(Json::parse(s.sweep({"-o", "r.db", "--json"}).out).at("run_now"), 0);
-  EXPECT_EQ(Json::parse(s.sweep({"-o", "r.db", "--json", "--retry"}).out).at("run_now"), 1);
+  EXPECT_EQ(json_of(s.sweep({"-o", "r.db", "--json"}).out).at("run_now"), 0);
+  EXPECT_EQ(json_of(s.sweep({"-o", "r.db", "--json", "--retry"}).out).at("run_now"), 1);
   EXPECT_EQ(s.sweep({"-o", "r.db", "--expect", "errors == 1"}).exit_code, 0);
 }
 
@@ -181,9 +181,9 @@ TEST(SweepCommand, RetryForgetsOnlyCasesThatItRuns) {
     "cases": {"value.mu": [-1, 0.8, -2]}, "worlds": {"w": {"friction": "${mu}"}}}})");
   ASSERT_EQ(s.sweep({"-o", "r.db"}).exit_code, 1);
   const Output again = s.sweep({"-o", "r.db", "--json", "--retry", "--cases", "0"});
-  EXPECT_EQ(Json::parse(again.out).at("run_now"), 1) << again.err;
-  EXPECT_EQ(Json::parse(again.out).at("done"), 3);
-  EXPECT_EQ(Json::parse(again.out).at("errors"), 2);
+  EXPECT_EQ(json_of(again.out).at("run_now"), 1) << again.err;
+  EXPECT_EQ(json_of(again.out).at("done"), 3);
+  EXPECT_EQ(json_of(again.out).at("errors"), 2);
 }
 
 TEST(SweepCommand, MergeNamesTheFilesThatDiffer) {
@@ -237,7 +237,7 @@ TEST(SweepCommand, JudgesExpectations) {
   const Output met = s.sweep(
       {"-o", "e.db", "--expect", "falls > 0", "--expect", "max_max_cog_error_m < 10", "--json"});
   EXPECT_EQ(met.exit_code, 0) << met.err;
-  const Json json = Json::parse(met.out);
+  const Json json = json_of(met.out);
   EXPECT_EQ(json.at("expectations").size(), 3u);
   EXPECT_GT(json.at("falls"), 0);
   EXPECT_EQ(json.at("worst_cases").at(0).at("outcome"), "fell");
@@ -265,7 +265,7 @@ TEST(SweepCommand, ACaseIsTheRunOfSimulate) {
   const Output alone = s.run({"simulate", "pushed.json", "--quiet", "--json", "--noise", "--seed",
                               "5", "--gain", "ka=0.8"});
   ASSERT_EQ(alone.exit_code, 0) << alone.err;
-  const Json figures = Json::parse(alone.out);
+  const Json figures = json_of(alone.out);
   const Table table(contents(s.folder / "c.csv"));
   const auto cell = [&](const std::string& name) { return table.cell(0, name); };
   EXPECT_EQ(cell("outcome"), "stands");
@@ -467,7 +467,7 @@ TEST(SweepCommand, DrawsProfilesRobotsAndParameters) {
   ASSERT_EQ(table.rows(), 7);
   const Output alone = s.run({"simulate", "quick.json", "--case", "7", "--json", "--quiet"});
   ASSERT_EQ(alone.exit_code, 0) << alone.err;
-  EXPECT_EQ(table.number(1, "final_cog_error_m"), Json::parse(alone.out).at("final_cog_error_m"));
+  EXPECT_EQ(table.number(1, "final_cog_error_m"), json_of(alone.out).at("final_cog_error_m"));
   EXPECT_NE(table.number(0, "final_cog_error_m"), table.number(1, "final_cog_error_m"));
   EXPECT_EQ(table.number(2, "push_worst_Ns"), table.number(4, "push_worst_Ns"));
   // The other robot has about eight times the mass and twice the height of its COG.
@@ -551,7 +551,7 @@ TEST(SweepOnSlurm, LostTasksAreSubmittedAgainUpToALimit) {
       << lost.err;
   EXPECT_EQ(lost.err.find('\n'), lost.err.size() - 1) << lost.err;
   const Output status = slurm.s.run({"sweep", "status", "b.db", "--json"});
-  EXPECT_EQ(Json::parse(status.out).at("missing"), 5);
+  EXPECT_EQ(json_of(status.out).at("missing"), 5);
   EXPECT_EQ(slurm.slurm("-o b.db --csv b.csv").exit_code, 0);
   EXPECT_EQ(contents(slurm.s.folder / "b.csv"), whole);
 }
@@ -573,14 +573,14 @@ TEST(SweepOnSlurm, AbsentOrRefusing) {
          "sbatch refused the job: sbatch: error: invalid partition specified: nowhere; the results "
          "so far are kept in r.db");
   const Output status = slurm.s.run({"sweep", "status", "r.db", "--json"});
-  EXPECT_EQ(Json::parse(status.out).at("done"), 3);
+  EXPECT_EQ(json_of(status.out).at("done"), 3);
   expect(slurm.s.sweep({"-o", "r.db", "--partition", "p"}), 2,
          "--partition works only together with --engine slurm");
   expect(slurm.s.sweep({"-o", "r.db", "--engine", "pbs"}), 2, "pbs");
   expect(slurm.s.sweep({"-o", "r.db", "--cases", "5-2"}), 2, "'5-2' is not a list of cases");
   expect(slurm.s.sweep({"-o", "r.db", "--cases", "24"}), 2, "numbers from 0 to 23");
   ASSERT_EQ(slurm.s.sweep({"-o", "c.db", "--cases", "2,5-7"}).exit_code, 0);
-  EXPECT_EQ(Json::parse(slurm.s.run({"sweep", "status", "c.db", "--json"}).out).at("done"), 4);
+  EXPECT_EQ(json_of(slurm.s.run({"sweep", "status", "c.db", "--json"}).out).at("done"), 4);
 }
 
 }  // namespace

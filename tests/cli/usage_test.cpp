@@ -3,11 +3,11 @@
 #include <cstdlib>
 #include <functional>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
 
 #include "tests/cli/program.hpp"
+#include "tests/support/json.hpp"
 
 namespace ayumi::test {
 namespace {
@@ -185,7 +185,7 @@ TEST_F(Usage, EmptyNamesAndNamesThatAreNotTextAreRefusedAtOnce) {
   EXPECT_EQ(ayumi({"check", ""}).exit_code, 2);
   const Output latin = ayumi({"run", kWalk, "-o", "caf\xe9", "--json"});
   EXPECT_EQ(latin.exit_code, 2);
-  EXPECT_EQ(nlohmann::json::parse(latin.out).at("exit_code"), 2);
+  EXPECT_EQ(json_of(latin.out).at("exit_code"), 2);
   EXPECT_NE(latin.err.find("'caf\\xe9' is not UTF-8 text"), std::string::npos) << latin.err;
 }
 
@@ -339,7 +339,7 @@ TEST_F(Usage, AnUnknownRobotIsBadInput) {
 TEST_F(Usage, JsonIsOneObjectAndNothingElse) {
   const Output output = ayumi({"inspect", "hoap1", "--json"});
   EXPECT_EQ(output.exit_code, 0) << output.err;
-  const auto object = nlohmann::json::parse(output.out);
+  const auto object = json_of(output.out);
   EXPECT_EQ(object.at("robot"), "hoap1");
   EXPECT_EQ(object.at("dof"), 20);
   EXPECT_NEAR(object.at("mass_kg"), 6.5, 1e-6);

@@ -15,6 +15,7 @@
 #include "ayumi/math/random.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/plan/sample.hpp"
+#include "tests/support/dense.hpp"
 
 namespace ayumi {
 namespace {
@@ -109,7 +110,7 @@ TEST(PreviewControl, FollowsAStepAsTheBestInputsDo) {
     response(steps + j, j) = std::sqrt(effort) / tick;
   }
   const VectorXd best =
-      (response.transpose() * response).ldlt().solve(-response.transpose() * free);
+      test::solve_dense(response.transpose() * response, -response.transpose() * free);
 
   Vector3d x = Vector3d::Zero();
   double sum = 0, u_best = 0, most = 0;

@@ -7,6 +7,7 @@
 #include "ayumi/io/robot/robot_file.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/math/weighted_solve.hpp"
+#include "tests/support/dense.hpp"
 #include "tests/support/pendulum.hpp"
 #include "tests/support/random_robot.hpp"
 
@@ -154,8 +155,8 @@ TEST_F(Errata, Equation23ResolvesTheTask) {
 
   const VectorXd v_printed = J * command - u;
   const MatrixXd winv = w.cwiseInverse().asDiagonal();
-  const VectorXd printed =
-      command + winv * J.transpose() * (J * winv * J.transpose()).inverse() * v_printed;
+  const MatrixXd spread = winv * J.transpose();
+  const VectorXd printed = command + spread * test::solve_dense(J * spread, v_printed);
   EXPECT_NEAR((J * printed - u)[0], -1.2, 1e-12);
 
   // No solution that meets the task is nearer to the command.

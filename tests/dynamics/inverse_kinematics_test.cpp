@@ -5,6 +5,7 @@
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "tests/support/biped.hpp"
+#include "tests/support/dense.hpp"
 #include "tests/support/random_robot.hpp"
 #include "tests/support/urdf_biped.hpp"
 
@@ -133,9 +134,9 @@ double leg_determinant(const RobotModel& model, const InverseKinematics& ik, con
                        Side side) {
   const Eigen::MatrixXd all =
       body_jacobian(model, data, model.sole(side).body, sole_pose(model, data, side).translation());
-  Eigen::Matrix<double, 6, 6> A;
+  Eigen::MatrixXd A(6, 6);
   for (int i = 0; i < 6; ++i) A.col(i) = all.col(6 + ik.leg(side)[static_cast<size_t>(i)]);
-  return A.determinant();
+  return test::determinant(A);
 }
 
 // The guesses have any distance, and the legs are on either side of the straight knee: the target

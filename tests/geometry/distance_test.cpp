@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "ayumi/math/rotation.hpp"
 #include "tests/support/random_pose.hpp"
 
 using namespace ayumi;
@@ -18,8 +19,7 @@ double segment_distance(const Vector3d& a0, const Vector3d& a1, const Vector3d& 
     Isometry3d pose = Isometry3d::Identity();
     pose.translation() = 0.5 * (from + to);
     if (to != from)
-      pose.linear() =
-          Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), to - from).toRotationMatrix();
+      pose.linear() = rotation_between(Vector3d::UnitZ(), to - from).toRotationMatrix();
     return pose;
   };
   constexpr double kRadius = 0.25;

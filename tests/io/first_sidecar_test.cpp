@@ -11,6 +11,7 @@
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/io/robot/robot_guess.hpp"
 #include "ayumi/math/polygon.hpp"
+#include "tests/support/dense.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/urdf_biped.hpp"
 
@@ -230,11 +231,11 @@ TEST(FirstSidecar, ServosDampTheirLimbCritically) {
     both << h.linear, h.angular;
     return both;
   };
-  Eigen::Matrix<double, 6, 6> of_base;
+  Eigen::MatrixXd of_base(6, 6);
   for (int row = 0; row < 6; ++row) of_base.col(row) = momentum(moving(row));
   for (int i = 0; i < model.dof_count(); ++i) {
     RobotState state = moving(6 + i);
-    const Eigen::Matrix<double, 6, 1> base = -of_base.lu().solve(momentum(state));
+    const Eigen::VectorXd base = -solve_dense(of_base, momentum(state));
     state.base_velocity = base.head<3>();
     state.base_angular_velocity = base.tail<3>();
     RobotData data(model);

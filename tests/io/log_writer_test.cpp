@@ -6,13 +6,13 @@
 #include <cmath>
 #include <cstring>
 #include <iterator>
-#include <nlohmann/json.hpp>
 
 #include "ayumi/base/file.hpp"
 #include "ayumi/io/run/results_json.hpp"
 #include "ayumi/io/run/run_folder.hpp"
 #include "ayumi/io/run/sha256.hpp"
 #include "tests/support/error_message.hpp"
+#include "tests/support/json.hpp"
 
 namespace ayumi {
 namespace {
@@ -147,7 +147,7 @@ TEST(LogInBlocks, IsReadBackWhole) {
   const auto header = [](const std::string& bytes) {
     std::uint32_t length = 0;
     std::memcpy(&length, bytes.data() + 12, sizeof length);
-    return nlohmann::json::parse(bytes.substr(20, length));
+    return test::json_of(bytes.substr(20, length));
   };
   EXPECT_EQ(long_bytes()[8], 4);
   EXPECT_EQ(header(long_bytes()).at("format"), "ayumi.log/4");

@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "ayumi/base/file.hpp"
 #include "tests/io/pattern_texts.hpp"
+#include "tests/support/json.hpp"
 #include "tests/support/json_schema.hpp"
 #include "tests/support/random_pattern.hpp"
 
@@ -19,9 +19,9 @@ std::vector<std::string> keys_of(const nlohmann::json& schema) {
 
 TEST_F(PatternSchema, KnowsExactlyTheKeysOfTheReader) {
   const std::string folder = AYUMI_SOURCE_DIR "/docs/schemas/";
-  const auto pattern = nlohmann::json::parse(read_file(folder + "pattern-1.schema.json"));
-  const auto postures = nlohmann::json::parse(read_file(folder + "postures-1.schema.json"));
-  const auto study = nlohmann::json::parse(read_file(folder + "study-1.schema.json"));
+  const auto pattern = json_of(read_file(folder + "pattern-1.schema.json"));
+  const auto postures = json_of(read_file(folder + "postures-1.schema.json"));
+  const auto study = json_of(read_file(folder + "study-1.schema.json"));
   for (const auto& [kind, keys] : pattern_keys()) {
     SCOPED_TRACE(kind);
     const nlohmann::json& schema = kind == "pattern"         ? pattern
@@ -43,8 +43,7 @@ TEST_F(PatternSchema, KnowsExactlyTheKeysOfTheReader) {
 
 // The reader accepts every value of an enumeration in the schema, and no similar word.
 TEST_F(PatternSchema, SchemaEnumerationsAreTheReaders) {
-  const auto schema =
-      nlohmann::json::parse(read_file(AYUMI_SOURCE_DIR "/docs/schemas/pattern-1.schema.json"));
+  const auto schema = json_of(read_file(AYUMI_SOURCE_DIR "/docs/schemas/pattern-1.schema.json"));
   const auto& defs = schema.at("$defs");
   const auto expect_accepted = [&](const nlohmann::json& values, const std::string& key,
                                    const std::string& before, const std::string& after) {
@@ -63,15 +62,13 @@ TEST_F(PatternSchema, SchemaEnumerationsAreTheReaders) {
                   R"({"cog_model": )", "}");
 }
 
-nlohmann::json with_comments(const std::string& text) {
-  return nlohmann::json::parse(text, nullptr, true, true);
-}
+nlohmann::json with_comments(const std::string& text) { return json_of(text, true); }
 
 // Schema and reader agree: written files fit the schema, and files that the reader refuses for
 // their form do not.
 TEST_F(PatternSchema, SchemaAndReaderAgree) {
   const JsonSchema schema(
-      nlohmann::json::parse(read_file(AYUMI_SOURCE_DIR "/docs/schemas/pattern-1.schema.json")));
+      json_of(read_file(AYUMI_SOURCE_DIR "/docs/schemas/pattern-1.schema.json")));
   EXPECT_TRUE(schema.accepts(with_comments(kTwoSteps)));
   for (unsigned seed = 0; seed < 60; ++seed)
     EXPECT_TRUE(schema.accepts(with_comments(pattern_text(random_pattern(seed))))) << seed;
@@ -107,7 +104,7 @@ TEST_F(PatternSchema, SchemaAndReaderAgree) {
       return reason.find(part) != std::string::npos;
     };
     if (std::any_of(beyond.begin(), beyond.end(), part_of_reason)) continue;
-    const auto document = nlohmann::json::parse(with(each.key, each.value), nullptr, false, true);
+    const auto document = json_or_nothing(with(each.key, each.value));
     if (document.is_discarded()) continue;  // the text is not even JSON
     EXPECT_FALSE(schema.accepts(document)) << each.key << ": " << each.value;
     ++judged;
@@ -117,7 +114,7 @@ TEST_F(PatternSchema, SchemaAndReaderAgree) {
 
 TEST_F(PatternSchema, BundledPatternsFitTheSchema) {
   const JsonSchema schema(
-      nlohmann::json::parse(read_file(AYUMI_SOURCE_DIR "/docs/schemas/pattern-1.schema.json")));
+      json_of(read_file(AYUMI_SOURCE_DIR "/docs/schemas/pattern-1.schema.json")));
   const fs::path folder = AYUMI_SOURCE_DIR "/patterns";
   if (!fs::exists(folder)) GTEST_SKIP() << "no patterns yet";
   for (const auto& entry : fs::directory_iterator(folder))

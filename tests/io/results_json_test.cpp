@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <nlohmann/json.hpp>
 
 #include "ayumi/io/run/run_results.hpp"
 #include "ayumi/io/run/simulation_log_file.hpp"
+#include "tests/support/json.hpp"
 
 namespace ayumi {
 namespace {
@@ -28,7 +28,7 @@ TEST(ResultsJson, CheckHasTheKeysOfTheCommandLine) {
                       .hint = "move the ZMP \"in\""}};
   report.summary[FindingKind::support_margin] = -0.003;
   report.summary[FindingKind::self_collision] = std::numeric_limits<double>::infinity();
-  const Json json = Json::parse(check_json(report));
+  const Json json = test::json_of(check_json(report));
   EXPECT_EQ(json.at("verdict"), "inconsistent");
   const Json& finding = json.at("findings").at(0);
   EXPECT_EQ(finding.at("kind"), "support_margin");
@@ -44,7 +44,7 @@ TEST(ResultsJson, CheckHasTheKeysOfTheCommandLine) {
   EXPECT_EQ(json.at("summary").at("min_zmp_margin_m"), -0.003);
   EXPECT_TRUE(json.at("summary").at("min_self_clearance_m").is_null());
   report.consistent = true;
-  EXPECT_EQ(Json::parse(check_json(report)).at("verdict"), "consistent");
+  EXPECT_EQ(test::json_of(check_json(report)).at("verdict"), "consistent");
 }
 
 // All figures of a check, each with a different value, are read back from run.json.
@@ -96,7 +96,7 @@ TEST(ResultsJson, SimulationHasTheKeysOfTheCommandLine) {
   log.controller = ControllerKind::dtad;
   log.result = {.outcome = Outcome::fell, .fell_at = 2.25, .max_tilt = 0.9, .steps = 3};
   log.events = {{2.25, "fell", "on its side"}};
-  Json json = Json::parse(simulation_json(log));
+  Json json = test::json_of(simulation_json(log));
   EXPECT_EQ(json.at("outcome"), "fell");
   EXPECT_EQ(json.at("fell_at_s"), 2.25);
   EXPECT_EQ(json.at("max_tilt_rad"), 0.9);
@@ -106,20 +106,20 @@ TEST(ResultsJson, SimulationHasTheKeysOfTheCommandLine) {
   for (const char* const key : {"final_cog_error_m", "zmp_tracking_rms_m", "flight_s", "apex_m"})
     EXPECT_TRUE(json.contains(key)) << key;
   log.result = {.outcome = Outcome::stands};
-  json = Json::parse(simulation_json(log));
+  json = test::json_of(simulation_json(log));
   EXPECT_EQ(json.at("outcome"), "stands");
   EXPECT_TRUE(json.at("fell_at_s").is_null());
   EXPECT_TRUE(json.at("apex_m").is_null());
   log.result.flight = 0.2;
   log.result.apex = 0.03;
-  EXPECT_EQ(Json::parse(simulation_json(log)).at("apex_m"), 0.03);
+  EXPECT_EQ(test::json_of(simulation_json(log)).at("apex_m"), 0.03);
   EXPECT_TRUE(json.at("figures_at").empty());
   log.joints = {"knee", "hip"};
   log.result.torque = {.ratio = 0.5, .joint = 1, .at = 2.9};
-  json = Json::parse(simulation_json(log));
+  json = test::json_of(simulation_json(log));
   EXPECT_EQ(json.at("max_torque_ratio"), 0.5);
   EXPECT_EQ(json.at("figures_at"),
-            Json::parse(R"({"max_torque_ratio": {"where": "hip", "at_s": 2.9}})"));
+            test::json_of(R"({"max_torque_ratio": {"where": "hip", "at_s": 2.9}})"));
 }
 
 TEST(ResultsJson, SafetyNamesEveryViolation) {
@@ -127,7 +127,7 @@ TEST(ResultsJson, SafetyNamesEveryViolation) {
   report.safe = false;
   report.ramp = 2;
   report.violations = {{"step", "l_knee", 1.234, 61, 57, "counts", 3}};
-  const Json json = Json::parse(safety_json(report));
+  const Json json = test::json_of(safety_json(report));
   EXPECT_EQ(json.at("safe"), false);
   EXPECT_EQ(json.at("ramp_s"), 2);
   EXPECT_EQ(json.at("violations").at(0).at("joint"), "l_knee");

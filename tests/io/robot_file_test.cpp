@@ -11,6 +11,7 @@
 #include "ayumi/io/robot/urdf.hpp"
 #include "ayumi/io/run/sha256.hpp"
 #include "tests/support/degree.hpp"
+#include "tests/support/json.hpp"
 #include "tests/support/json_schema.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -217,15 +218,14 @@ TEST(Sidecar, LocksJoints) {
 }
 
 TEST(Sidecar, StatesLoadCellsAndTheLatencyOfEachSensor) {
-  const test::JsonSchema schema(nlohmann::json::parse(
-      read_file(AYUMI_SOURCE_DIR "/docs/schemas/robot-1.schema.json"), nullptr, true, true));
+  const test::JsonSchema schema(
+      test::json_of(read_file(AYUMI_SOURCE_DIR "/docs/schemas/robot-1.schema.json"), true));
   const TemporaryFolder folder;
   folder.write("robot.urdf", read_file(kRobots + "/hoap1/robot.urdf"));
   std::filesystem::create_directory_symlink(kRobots + "/hoap1/meshes", folder.path() / "meshes");
-  nlohmann::json sidecar =
-      nlohmann::json::parse(read_file(kRobots + "/hoap1/robot.json"), nullptr, true, true);
+  nlohmann::json sidecar = test::json_of(read_file(kRobots + "/hoap1/robot.json"), true);
   const auto load = [&](const std::string& sensors) {
-    sidecar["sensors"] = nlohmann::json::parse(sensors);
+    sidecar["sensors"] = test::json_of(sensors);
     EXPECT_TRUE(schema.accepts(sidecar)) << sensors;
     folder.write("robot.json", sidecar.dump());
     return load_robot(folder.path().string());
@@ -262,7 +262,7 @@ TEST(Sidecar, StatesLoadCellsAndTheLatencyOfEachSensor) {
   for (const char* bad :
        {R"({"force_readings": 0})", R"({"force_cells": {"middle": [{}]}})",
         R"({"force_cells": {"left": [{"gain": -1}]}})", R"({"imu_latency": 2})"}) {
-    sidecar["sensors"] = nlohmann::json::parse(bad);
+    sidecar["sensors"] = test::json_of(bad);
     EXPECT_FALSE(schema.accepts(sidecar)) << bad;
     folder.write("robot.json", sidecar.dump());
     EXPECT_THROW(load_robot(folder.path().string()), Error) << bad;
@@ -271,9 +271,7 @@ TEST(Sidecar, StatesLoadCellsAndTheLatencyOfEachSensor) {
 
 // The published schema accepts the bundled sidecar, and refuses what the reader refuses.
 TEST(Sidecar, FitsItsSchema) {
-  const auto json = [](const std::string& file) {
-    return nlohmann::json::parse(read_file(file), nullptr, true, true);
-  };
+  const auto json = [](const std::string& file) { return test::json_of(read_file(file), true); };
   const test::JsonSchema schema(json(AYUMI_SOURCE_DIR "/docs/schemas/robot-1.schema.json"));
   const nlohmann::json good = json(kRobots + "/hoap1/robot.json");
   EXPECT_TRUE(schema.accepts(good));
@@ -284,7 +282,7 @@ TEST(Sidecar, FitsItsSchema) {
         R"({"encoders": {"r_knee": {"device": 0}}})",
         R"({"control": {"joint_weight": [{"joints": ["*"], "weight": 0}]}})"}) {
     nlohmann::json bad = good;
-    bad.update(nlohmann::json::parse(patch));
+    bad.update(test::json_of(patch));
     EXPECT_FALSE(schema.accepts(bad)) << patch;
     const TemporaryFolder folder;
     folder.write("robot.urdf", read_file(kRobots + "/hoap1/robot.urdf"));

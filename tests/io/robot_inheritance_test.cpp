@@ -2,10 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "ayumi/base/error.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
+#include "tests/support/json.hpp"
 #include "tests/support/json_schema.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -204,10 +203,10 @@ TEST(RobotInheritance, CirclesAndMissingBasesAreRefused) {
 }
 
 TEST(RobotInheritance, FitsTheSchema) {
-  const test::JsonSchema schema(nlohmann::json::parse(
-      read_file(AYUMI_SOURCE_DIR "/docs/schemas/robot-1.schema.json"), nullptr, true, true));
-  EXPECT_TRUE(schema.accepts(nlohmann::json::parse(over_base("hoap1"))));
-  EXPECT_FALSE(schema.accepts(nlohmann::json::parse(R"({"format": "ayumi.robot/1"})")));
+  const test::JsonSchema schema(
+      test::json_of(read_file(AYUMI_SOURCE_DIR "/docs/schemas/robot-1.schema.json"), true));
+  EXPECT_TRUE(schema.accepts(test::json_of(over_base("hoap1"))));
+  EXPECT_FALSE(schema.accepts(test::json_of(R"({"format": "ayumi.robot/1"})")));
 }
 
 }  // namespace

@@ -5,12 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "ayumi/base/file.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
 #include "ayumi/io/table/recording.hpp"
 #include "tests/support/error_message.hpp"
+#include "tests/support/json.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace ayumi::test {
@@ -24,8 +24,8 @@ class Changed {
   explicit Changed(const std::string& members) {
     folder_.write("robot.urdf", read_file(kHoap1 + "/robot.urdf"));
     std::filesystem::create_directory_symlink(kHoap1 + "/meshes", folder_.path() / "meshes");
-    auto json = nlohmann::json::parse(read_file(kHoap1 + "/robot.json"), nullptr, true, true);
-    json.merge_patch(nlohmann::json::parse(members));
+    auto json = json_of(read_file(kHoap1 + "/robot.json"), true);
+    json.merge_patch(json_of(members));
     folder_.write("robot.json", json.dump());
   }
   RobotModel load() const { return load_robot(folder_.path().string()); }

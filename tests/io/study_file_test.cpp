@@ -2,14 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "ayumi/base/file.hpp"
 #include "ayumi/io/pattern/assumed_study.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
 #include "tests/support/error_message.hpp"
 #include "tests/support/hoap1.hpp"
+#include "tests/support/json.hpp"
 #include "tests/support/json_schema.hpp"
 
 namespace ayumi::test {
@@ -142,16 +141,14 @@ TEST(StudyFile, APatternKeepsItsUncertainty) {
   EXPECT_EQ(second.uncertainty.pushes[0].links, first.uncertainty.pushes[0].links);
   EXPECT_TRUE(second.uncertainty.pushes[0].bounds);
   const JsonSchema schema(
-      nlohmann::json::parse(read_file(AYUMI_SOURCE_DIR "/docs/schemas/pattern-1.schema.json")));
-  EXPECT_TRUE(schema.accepts(nlohmann::json::parse(once, nullptr, true, true)));
+      json_of(read_file(AYUMI_SOURCE_DIR "/docs/schemas/pattern-1.schema.json")));
+  EXPECT_TRUE(schema.accepts(json_of(once, true)));
 }
 
 // The schema of studies refers to the schema of patterns.
 TEST(StudyFile, BundledStudiesFitTheSchemaAndHaveSources) {
-  auto schema =
-      nlohmann::json::parse(read_file(AYUMI_SOURCE_DIR "/docs/schemas/study-1.schema.json"));
-  const auto patterns =
-      nlohmann::json::parse(read_file(AYUMI_SOURCE_DIR "/docs/schemas/pattern-1.schema.json"));
+  auto schema = json_of(read_file(AYUMI_SOURCE_DIR "/docs/schemas/study-1.schema.json"));
+  const auto patterns = json_of(read_file(AYUMI_SOURCE_DIR "/docs/schemas/pattern-1.schema.json"));
   for (auto& [key, value] : schema.at("properties").items())
     if (value.contains("$ref")) {
       const std::string reference = value.at("$ref");
@@ -163,21 +160,20 @@ TEST(StudyFile, BundledStudiesFitTheSchemaAndHaveSources) {
   for (const char* file : {"/robots/hoap1/uncertainty.json", "/robots/humanoid30/uncertainty.json",
                            "/examples/certify/pushed_walk.json"}) {
     const fs::path path = std::string(AYUMI_SOURCE_DIR) + file;
-    EXPECT_TRUE(judge.accepts(nlohmann::json::parse(read_file(path), nullptr, true, true))) << path;
+    EXPECT_TRUE(judge.accepts(json_of(read_file(path), true))) << path;
     const Study study = read_study(path);
     EXPECT_FALSE(study.uncertainty.empty());
     for (const UncertainQuantity& q : study.uncertainty.quantities) EXPECT_NE(q.source, "");
     ++studies;
   }
   EXPECT_EQ(studies, 3);
-  EXPECT_FALSE(judge.accepts(nlohmann::json::parse(
+  EXPECT_FALSE(judge.accepts(json_of(
       R"({"format": "ayumi.study/1", "uncertainty": {"quantities": [{"what": "mass"}]}})")));
 }
 
 // The kinds of the schema are those of the reader.
 TEST(StudyFile, SchemaListsTheKinds) {
-  const auto patterns =
-      nlohmann::json::parse(read_file(AYUMI_SOURCE_DIR "/docs/schemas/pattern-1.schema.json"));
+  const auto patterns = json_of(read_file(AYUMI_SOURCE_DIR "/docs/schemas/pattern-1.schema.json"));
   std::vector<std::string> kinds;
   for (const UncertainKindInfo& kind : uncertain_kinds()) kinds.push_back(kind.name);
   EXPECT_EQ(patterns.at("$defs").at("quantity").at("properties").at("what").at("enum"), kinds);

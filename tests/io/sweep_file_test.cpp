@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "ayumi/base/file.hpp"
 #include "tests/support/error_message.hpp"
+#include "tests/support/json.hpp"
 #include "tests/support/json_schema.hpp"
 
 namespace ayumi::test {
@@ -119,10 +119,8 @@ TEST(SweepFile, SaysWhatIsWrongAndWhere) {
 }
 
 TEST(SweepFile, BundledStudyFitsTheSchema) {
-  auto schema =
-      nlohmann::json::parse(read_file(AYUMI_SOURCE_DIR "/docs/schemas/study-1.schema.json"));
-  const auto patterns =
-      nlohmann::json::parse(read_file(AYUMI_SOURCE_DIR "/docs/schemas/pattern-1.schema.json"));
+  auto schema = json_of(read_file(AYUMI_SOURCE_DIR "/docs/schemas/study-1.schema.json"));
+  const auto patterns = json_of(read_file(AYUMI_SOURCE_DIR "/docs/schemas/pattern-1.schema.json"));
   for (auto& [key, value] : schema.at("properties").items())
     if (value.contains("$ref")) {
       const std::string reference = value.at("$ref");
@@ -132,11 +130,11 @@ TEST(SweepFile, BundledStudyFitsTheSchema) {
   const JsonSchema judge(schema);
   const std::string path = AYUMI_SOURCE_DIR "/examples/sweep/friction.json";
   const std::string text = read_file(path);
-  EXPECT_TRUE(judge.accepts(nlohmann::json::parse(text, nullptr, true, true)));
+  EXPECT_TRUE(judge.accepts(json_of(text, true)));
   EXPECT_EQ(SweepStudy(text, path).size(), 64);
-  EXPECT_FALSE(judge.accepts(nlohmann::json::parse(
-      R"({"format": "ayumi.study/1", "sweep": {"cases": {}, "measure": ["verdcit"]}})")));
-  EXPECT_FALSE(judge.accepts(nlohmann::json::parse(R"({"format": "ayumi.study/1"})")));
+  EXPECT_FALSE(judge.accepts(
+      json_of(R"({"format": "ayumi.study/1", "sweep": {"cases": {}, "measure": ["verdcit"]}})")));
+  EXPECT_FALSE(judge.accepts(json_of(R"({"format": "ayumi.study/1"})")));
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <random>
 #include <regex>
 
@@ -19,6 +18,7 @@
 #include "ayumi/motion/differentiate.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "tests/support/hoap1.hpp"
+#include "tests/support/json.hpp"
 
 namespace ayumi::test {
 namespace {
@@ -100,7 +100,7 @@ double hostile_number(Dice& dice, double now) {
 }
 
 std::string mutated(const std::string& text, Dice& dice) {
-  Json pattern = Json::parse(text, nullptr, true, true);
+  Json pattern = json_of(text, true);
   for (int changes = 1 + dice.pick(3); changes > 0; --changes) {
     std::vector<Json*> values;
     for (const char* key : {"keyframes", "phases", "world", "defaults"})

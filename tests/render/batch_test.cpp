@@ -2,9 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "tests/render/standing_run.hpp"
+#include "tests/support/json.hpp"
 
 namespace ayumi::test {
 namespace {
@@ -25,7 +24,7 @@ TEST_F(Batch, ManyRunsBecomeAFolderOfClips) {
                                             "--columns", "2",       "--json"};
   const Output made = ayumi(command);
   ASSERT_EQ(made.exit_code, 0) << made.err;
-  const Json json = Json::parse(made.out);
+  const Json json = json_of(made.out);
   EXPECT_EQ(json.at("runs").size(), 3u);
   EXPECT_TRUE(json.at("failures").empty());
   for (const char* name : {"run.mp4", "b.mp4", "c.mp4"})
@@ -72,9 +71,9 @@ TEST_F(Batch, FurtherFormats) {
   EXPECT_EQ(contents(folder / "a.glb").substr(0, 4), "glTF");
   const Output strip = ayumi({"preview", "run", "-o", "s.png", "--size", "64x36", "--strip", "3",
                               "--columns", "3", "--json"});
-  EXPECT_EQ(Json::parse(strip.out).at("size").at(0), 192);
-  EXPECT_GT(Json::parse(strip.out).at("size").at(1), 36) << "with a title and a legend";
-  EXPECT_EQ(Json::parse(strip.out).at("frames"), 3) << "snapshots";
+  EXPECT_EQ(json_of(strip.out).at("size").at(0), 192);
+  EXPECT_GT(json_of(strip.out).at("size").at(1), 36) << "with a title and a legend";
+  EXPECT_EQ(json_of(strip.out).at("frames"), 3) << "snapshots";
   const Output many = ayumi(
       {"preview", "run", "-o", "e.png", "--size", "64x36", "--exposures", "3", "--show", "heat"});
   EXPECT_EQ(many.exit_code, 0) << many.err;

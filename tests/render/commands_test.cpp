@@ -1,9 +1,8 @@
 // `ayumi preview` and `ayumi plot` on a run in which HOAP-1 stands.
 
-#include <nlohmann/json.hpp>
-
 #include "ayumi/render/clip.hpp"
 #include "tests/render/standing_run.hpp"
+#include "tests/support/json.hpp"
 
 namespace ayumi::test {
 namespace {
@@ -13,7 +12,7 @@ using Commands = OnARun;
 TEST_F(Commands, PreviewWritesAClipAndSaysSo) {
   const Output made = ayumi({"preview", "run", "-o", "a.mp4", "--size", "160x90", "--json"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
-  const auto json = nlohmann::json::parse(made.out);
+  const auto json = json_of(made.out);
   EXPECT_EQ(json.at("frames"), 7);
   EXPECT_EQ(json.at("fps"), 30);
   EXPECT_EQ(json.at("size"), nlohmann::json({160, 90}));
@@ -37,7 +36,7 @@ TEST_F(Commands, PreviewTakesOnePicture) {
 TEST_F(Commands, PlotDrawsAllLogsOfARun) {
   const Output made = ayumi({"plot", "run", "-o", "a.svg", "--json"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
-  const auto json = nlohmann::json::parse(made.out);
+  const auto json = json_of(made.out);
   EXPECT_EQ(json.at("series").size(), 8u);
   EXPECT_EQ(json.at("series").at(6), "margin [mm]");
   EXPECT_EQ(json.at("runs"), nlohmann::json({"open loop", "closed loop, dtad"}));
@@ -50,7 +49,7 @@ TEST_F(Commands, PlotDrawsAllLogsOfARun) {
 TEST_F(Commands, ExportWritesTheReferenceAsGltf) {
   const Output made = ayumi({"export", "run", "--format", "gltf", "-o", "a.glb", "--json"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
-  const auto json = nlohmann::json::parse(made.out);
+  const auto json = json_of(made.out);
   EXPECT_EQ(json.at("rows"), 13);
   const std::string bytes = contents(folder / "a.glb");
   EXPECT_EQ(json.at("bytes"), bytes.size());

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <cstring>
-#include <nlohmann/json.hpp>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
@@ -12,6 +11,7 @@
 #include "ayumi/render/simplify.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/render/box_robot.hpp"
+#include "tests/support/json.hpp"
 
 namespace ayumi::test {
 namespace {
@@ -30,7 +30,7 @@ struct Glb {
     };
     EXPECT_EQ(bytes.substr(0, 4), "glTF");
     EXPECT_EQ(word(8), bytes.size());
-    json = Json::parse(bytes.substr(20, word(12)));
+    json = json_of(bytes.substr(20, word(12)));
     binary = bytes.substr(28 + word(12));
   }
 

@@ -2,9 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "tests/render/standing_run.hpp"
+#include "tests/support/json.hpp"
 
 namespace ayumi::test {
 namespace {
@@ -14,7 +13,7 @@ using ReportCommand = OnARun;
 TEST_F(ReportCommand, WritesOnePage) {
   const Output made = ayumi({"report", "run", "-o", "r.html", "--json"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
-  const auto json = nlohmann::json::parse(made.out);
+  const auto json = json_of(made.out);
   const std::string html = contents(folder / "r.html");
   EXPECT_EQ(json.at("bytes"), html.size());
   EXPECT_NE(html.find("The closed loop (dtad) <span class=\"good\">stands</span>"),

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
@@ -11,6 +10,7 @@
 #include "ayumi/report/page.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/render/box_robot.hpp"
+#include "tests/support/json.hpp"
 
 namespace ayumi::test {
 namespace {
@@ -342,7 +342,7 @@ TEST(AuthorPage, ShowsTargetsOfManyJointsForAMinute) {
   const Folder folder;
   write_robot_with_fingers(folder);
   // The text is as the trials write it.
-  write(folder / "targets.json", nlohmann::ordered_json::parse(minute_of_targets()).dump(1));
+  write(folder / "targets.json", json_of(minute_of_targets()).dump(1));
   expect_page_works("author_targets.mjs", folder, "targets.json");
 }
 

@@ -7,6 +7,7 @@
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
 #include "ayumi/io/robot/urdf.hpp"
+#include "ayumi/math/rotation.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/sim/plant/plant.hpp"
 #include "tests/support/block.hpp"
@@ -139,8 +140,7 @@ TEST(MeshOnTheGround, AnOctahedronLiesOnItsFace) {
   const RobotModel model(d);
   Plant plant(model, model.limits(), World{.friction = 0.5});
   RobotState s = model.rest_state();
-  s.base.attitude =
-      Eigen::Quaterniond::FromTwoVectors(Vector3d(1, 1, 1).normalized(), Vector3d(0, 0, -1));
+  s.base.attitude = rotation_between(Vector3d(1, 1, 1), Vector3d(0, 0, -1));
   s.base.position.z() = 0.06;
   plant.set_state(s);
   for (int i = 0; i < 1000; ++i) plant.step(VectorXd(0), {}, 1e-3);

@@ -9,6 +9,7 @@
 #include "ayumi/dynamics/zmp.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/model/gravity.hpp"
+#include "tests/support/dense.hpp"
 
 namespace ayumi::test {
 namespace {
@@ -112,7 +113,7 @@ void place_legs(const RobotModel& model, const std::array<Eigen::Isometry3d, 2>&
           body_jacobian(model, data, model.sole(side).body, sole.translation());
       Eigen::MatrixXd Jleg(6, leg.size());
       for (size_t j = 0; j < leg.size(); ++j) Jleg.col(j) = J.col(6 + leg[j]);
-      const Eigen::VectorXd step = Jleg.partialPivLu().solve(error);
+      const Eigen::VectorXd step = solve_dense(Jleg, error);
       for (size_t j = 0; j < leg.size(); ++j) state.theta[leg[j]] += step[j];
     }
   }
