@@ -263,16 +263,21 @@ void MainJob::write_hoap(const Task& input) {
         "no table for a robot, because the table of the pattern is from a run with disturbances (" +
         caution.disturbances + ")" + still + text;
   } else if (encoders && safe.report.safe && !options_.light) {
-    write_file(output_->file("hoap.csv"), hoap_csv(input.robot, safe.table, safety));
-    note_file("hoap.csv");
-    text += ", hoap.csv (" + std::to_string(safe.table.rows.size()) +
-            " rows, largest step from row to row " +
-            text::fixed(100 * safe.report.max_step_ratio, 0) + " % of the limit" +
-            (safe.report.worst_joint.empty()
-                 ? ""
-                 : " (" + safe.report.worst_joint + " at " + text::fixed(safe.report.worst_at, 3) +
-                       " s of the table)") +
-            ")";
+    try {
+      write_file(output_->file("hoap.csv"), hoap_csv(input.robot, safe.table, safety));
+      note_file("hoap.csv");
+      text += ", hoap.csv (" + std::to_string(safe.table.rows.size()) +
+              " rows, largest step from row to row " +
+              text::fixed(100 * safe.report.max_step_ratio, 0) + " % of the limit" +
+              (safe.report.worst_joint.empty()
+                   ? ""
+                   : " (" + safe.report.worst_joint + " at " +
+                         text::fixed(safe.report.worst_at, 3) + " s of the table)") +
+              ")";
+    } catch (const Error& error) {  // the run is whole without a file that cannot hold its table
+      if (error.code() != ErrorCode::bad_pattern) throw;
+      text += std::string("; hoap.csv is not written: ") + error.what();
+    }
   } else if (encoders && !safe.report.safe) {
     text += (options_.light ? "; the table for the robot is unsafe: "
                             : "; hoap.csv is not written, because the table is unsafe: ") +

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "ayumi/base/utf8.hpp"
+
 namespace ayumi {
 namespace {
 
@@ -64,6 +66,33 @@ TEST(PrintableText, IsPrintableForAnyBytes) {
     }
     EXPECT_EQ(text::printable(shown), shown);
   }
+}
+
+TEST(WideEncoding, IsKnownByItsMarkOrByItsZeros) {
+  const auto wide = [](const std::string& text, size_t width, size_t place) {
+    std::string bytes;
+    for (const char c : text) {
+      std::string character(width, '\0');
+      character[place] = c;
+      bytes += character;
+    }
+    return text::wide_encoding(bytes);
+  };
+  for (const std::string text : {"0.1, 2\n", "{\"t\": 1}"}) {
+    EXPECT_EQ(wide(text, 2, 0), "UTF-16");
+    EXPECT_EQ(wide(text, 2, 1), "UTF-16");
+    EXPECT_EQ(wide(text, 4, 0), "UTF-32");
+    EXPECT_EQ(wide(text, 4, 3), "UTF-32");
+    EXPECT_EQ(wide(text, 1, 0), "");
+    EXPECT_EQ(wide(text, 3, 0), "");
+  }
+  EXPECT_EQ(text::wide_encoding(std::string("\xFF\xFE\0\0", 4)), "UTF-32");
+  EXPECT_EQ(text::wide_encoding(std::string("\0\0\xFE\xFF", 4)), "UTF-32");
+  EXPECT_EQ(text::wide_encoding("\xFF\xFE"), "UTF-16");
+  EXPECT_EQ(text::wide_encoding("\xFE\xFFx"), "UTF-16");
+  EXPECT_EQ(text::wide_encoding(""), "");
+  EXPECT_EQ(text::wide_encoding(std::string(8, '\0')), "");
+  EXPECT_EQ(text::wide_encoding(std::string("a\0b", 3)), "") << "a character and a half";
 }
 
 }  // namespace

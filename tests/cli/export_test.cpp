@@ -125,6 +125,27 @@ TEST_F(Export, TablesAreAtTheServoPeriodOfTheRobot) {
   EXPECT_EQ(cells(lines("h.csv").front()).front(), "2");
 }
 
+// A HOAP sequence states a whole number of milliseconds. A robot whose servos take a target every
+// 12.5 ms is simulated in all the same.
+TEST_F(Export, ARunIsWholeWithoutATableThatItsFormatCannotHold) {
+  fs::copy(AYUMI_SOURCE_DIR "/robots/hoap1", folder.path() / "odd", fs::copy_options::recursive);
+  const fs::path sidecar = folder.path() / "odd/robot.json";
+  std::string text = contents(sidecar);
+  const std::string period = "\"servo_period\": 0.001";
+  text.replace(text.find(period), period.size(), "\"servo_period\": 0.0125");
+  write(sidecar, text);
+  const Output made = run_program(
+      {"new", "stand", "--robot", "odd", "--duration", "0.5", "-o", "s.json"}, folder.path());
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const Output run = run_program({"run", "s.json", "-o", "run", "--no-pictures"}, folder.path());
+  EXPECT_EQ(run.exit_code, 0) << run.err << run.out;
+  EXPECT_NE((run.out + run.err).find("hoap.csv is not written: a HOAP sequence needs a whole "),
+            std::string::npos)
+      << run.out << run.err;
+  EXPECT_TRUE(fs::exists(folder.path() / "run/reference.csv"));
+  EXPECT_FALSE(fs::exists(folder.path() / "run/hoap.csv"));
+}
+
 // The elbow moves at 87 % of its speed limit: consistent unless the pattern asks for more.
 TEST_F(Export, APatternIsJudgedByItsOwnTolerances) {
   ASSERT_EQ(ayumi({"p.json", "--format", "csv", "-o", "a.csv"}).exit_code, 0);

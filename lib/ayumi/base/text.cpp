@@ -84,6 +84,28 @@ size_t not_utf8_at(std::string_view text) {
   return std::string_view::npos;
 }
 
+std::string wide_encoding(std::string_view text) {
+  using namespace std::string_view_literals;
+  // The mark of UTF-16 is the beginning of one of the marks of UTF-32.
+  if (text.starts_with("\xFF\xFE\0\0"sv) || text.starts_with("\0\0\xFE\xFF"sv)) return "UTF-32";
+  if (text.starts_with("\xFF\xFE"sv) || text.starts_with("\xFE\xFF"sv)) return "UTF-16";
+  const auto is_plain = [](char c) {
+    return (c >= ' ' && c < 127) || c == '\n' || c == '\r' || c == '\t';
+  };
+  // Number of bytes that are examined. Chosen: at least 50 characters.
+  const std::string_view head = text.substr(0, 200);
+  for (const size_t width : {2, 4}) {
+    const size_t whole = head.size() / width * width;
+    for (const size_t place : {size_t{0}, width - 1}) {  // of the byte that is not 0
+      bool wide = whole > width;
+      for (size_t i = 0; i < whole && wide; ++i)
+        wide = i % width == place ? is_plain(head[i]) : head[i] == '\0';
+      if (wide) return width == 2 ? "UTF-16" : "UTF-32";
+    }
+  }
+  return "";
+}
+
 std::string exact(double value) {
   char buffer[40];
   return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};

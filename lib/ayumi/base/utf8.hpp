@@ -14,6 +14,10 @@ size_t utf8_character(std::string_view text, char32_t& code);
 /// The index of the first byte that is no part of UTF-8 text; npos if there is none.
 size_t not_utf8_at(std::string_view text);
 
+/// "UTF-16" or "UTF-32" if a text has two or four bytes for each character: it begins with the mark
+/// of such a text, or only one byte of each character at its beginning is not 0. Otherwise "".
+std::string wide_encoding(std::string_view text);
+
 /// The text without the mark of UTF-8 at its beginning, and with line feeds at the ends of lines
 /// that have carriage returns (macOS before 10, Windows).
 std::string with_line_feeds(std::string_view text);

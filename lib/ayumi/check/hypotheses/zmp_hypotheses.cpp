@@ -97,18 +97,22 @@ void mirrored_points(const ExaminedPattern& of, size_t phase, const std::vector<
     if (!is_under(of, key, support)) return;
     places.push_back(of.key_place(k));
   }
-  const double y = of.pattern.keyframes[wrong.front()].zmp->point.y();
+  const auto y_of = [&](size_t k) { return of.pattern.keyframes[k].zmp->point.y(); };
+  const double y = y_of(wrong.front());
+  const bool one_y =
+      std::all_of(wrong.begin(), wrong.end(), [&](size_t k) { return y_of(k) == y; });
   const bool several = places.size() > 1;
-  made.push_back({Rank::exchange,
-                  {of.phase_place(phase),
-                   std::string("the robot stands on the ") + name_of(stance_of(support)) +
-                       " foot, but " + text::join(places, " and ") + (several ? " put" : " puts") +
-                       " the ZMP on the other side (y is " + text::brief(y) + " m)",
-                   std::string("with the other sign of y") +
-                       (several ? " in these keyframes (" : " (") + text::brief(-y) + " m)"},
-                  [wrong](Pattern& p) {
-                    for (const size_t k : wrong) p.keyframes[k].zmp->point.y() *= -1;
-                  }});
+  made.push_back(
+      {Rank::exchange,
+       {of.phase_place(phase),
+        std::string("the robot stands on the ") + name_of(stance_of(support)) + " foot, but " +
+            text::join(places, " and ") + (several ? " put" : " puts") +
+            " the ZMP on the other side" + (one_y ? " (y is " + text::brief(y) + " m)" : ""),
+        std::string("with the other sign of y") + (several ? " in these keyframes" : "") +
+            (one_y ? " (" + text::brief(-y) + " m)" : "")},
+       [wrong](Pattern& p) {
+         for (const size_t k : wrong) p.keyframes[k].zmp->point.y() *= -1;
+       }});
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 // This file makes evenly spaced postures of a robot from the content of a motion file.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -43,21 +42,6 @@ size_t line_at(const std::string& bytes, size_t at) {
   const auto line_feeds = std::count(bytes.begin(), end, '\n');
   return static_cast<size_t>(line_feeds > 0 ? line_feeds : std::count(bytes.begin(), end, '\r')) +
          1;
-}
-
-// The text has two bytes for each character, one of which is 0 in plain letters and digits.
-bool is_utf16(std::string_view bytes) {
-  if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) return true;
-  const std::string_view head = bytes.substr(0, 200);
-  std::array<size_t, 2> zeros = {}, letters = {};
-  for (size_t i = 0; i < head.size(); ++i) {
-    const auto byte = static_cast<unsigned char>(head[i]);
-    zeros[i % 2] += byte == 0;
-    letters[i % 2] += (byte >= ' ' && byte < 127) || byte == '\n' || byte == '\r' || byte == '\t';
-  }
-  const size_t half = head.size() / 2;
-  return half > 1 &&
-         ((zeros[0] >= half && letters[1] >= half) || (zeros[1] >= half && letters[0] >= half));
 }
 
 void refuse_other_encodings(const MotionInput& source) {
@@ -160,7 +144,8 @@ const MotionFormat& format_of(const std::string& bytes, MotionInput& source,
   if (options.rate != 0) require_within("the rate of the rows", options.rate, ImportOptions::kRate);
   if (options.smooth)
     require_within("the largest change by smoothing", *options.smooth, ImportOptions::kSmooth);
-  if (is_utf16(bytes)) source.refuse(1, "this is UTF-16 text; save it as UTF-8");
+  if (const std::string wide = text::wide_encoding(bytes); !wide.empty())
+    source.refuse(1, "this is " + wide + " text; save it as UTF-8");
   const MotionFormat* format = nullptr;
   const bool text = bytes.find('\0') == std::string::npos;
   if (text) refuse_too_many(source, bytes);

@@ -8,6 +8,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/json_pointer.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/base/utf8.hpp"
 #include "ayumi/io/json/json_depth.hpp"
 #include "ayumi/io/json/json_slip.hpp"
 
@@ -144,8 +145,8 @@ Json parse_json(const std::string& bytes, const std::string& file, ErrorCode cod
   const bool blank =
       std::all_of(bytes.begin(), bytes.end(), [](unsigned char c) { return std::isspace(c); });
   if (blank) fail(code, {file}, "the file is empty; it must hold JSON");
-  if (bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff"))
-    fail(code, {file}, "this is UTF-16 text; save it as UTF-8");
+  if (const std::string wide = text::wide_encoding(bytes); !wide.empty())
+    fail(code, {file}, "this is " + wide + " text; save it as UTF-8");
   Json document;
   DocumentBuilder builder(document);
   try {

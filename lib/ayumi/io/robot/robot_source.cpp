@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/utf8.hpp"
 #include "ayumi/io/robot/choreonoid_body.hpp"
 #include "ayumi/io/robot/mjcf.hpp"
 #include "ayumi/io/robot/sdf.hpp"
@@ -69,11 +70,8 @@ bool has_robot_ending(const fs::path& path) {
 RobotFormat robot_format(const std::string& bytes, const fs::path& path) {
   std::string_view text = bytes;
   const std::string extension = robot_ending(path);
-  using namespace std::string_view_literals;
-  if (text.starts_with("\xff\xfe\0\0"sv) || text.starts_with("\0\0\xfe\xff"sv))
-    refuse_robot(path, "this is text in UTF-32; save it as UTF-8");
-  if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
-    refuse_robot(path, "this is text in UTF-16; save it as UTF-8");
+  if (const std::string wide = text::wide_encoding(bytes); !wide.empty())
+    refuse_robot(path, "this is " + wide + " text; save it as UTF-8");
   // Binary data has a zero byte early on.
   if (text.substr(0, 1024).find('\0') != std::string_view::npos)
     refuse_robot(path, "this is binary data, and not the text of a robot");
