@@ -2,7 +2,8 @@
 """Measures what happens at half and at twice the value of the constants that steer verdicts.
 
     docs/measurements/constants.py                       all constants, writes constants.md
-    docs/measurements/constants.py repair limits/stance  only prints constants with a word in their name
+    docs/measurements/constants.py repair limits/stance  constants with one of these words in their
+                                                         name; the page keeps its other rows
     docs/measurements/constants.py --list                names of the constants, and those left out
     docs/measurements/constants.py --build               only builds the program
     docs/measurements/constants.py --page                only writes constants.md from what is measured
@@ -37,7 +38,8 @@ LIBRARY = TREE / "lib/ayumi"
 PROGRAM = TREE / "build/release/app/ayumi"
 
 SOURCES = ["repair/policy.hpp", "limits", "check", "demand", "control", "sim", "study", "plan",
-           "author/import/contact_detection.cpp"]
+           "author/import/contact_detection.cpp", "identify/compare.cpp",
+           "io/robot/first_sidecar.cpp"]
 
 # Constants that the compiler has to know, or whose half and double have no meaning.
 LEFT_OUT = {
@@ -58,6 +60,18 @@ LEFT_OUT = {
     "plant_mujoco": "belongs to the second plant, which the cases do not use",
     "kLargestNumber": "refuses input, changes no result",
     "kMostSamples": "refuses input, changes no result",
+    "kMostLogEvents": "refuses input, changes no result",
+    "kMostLatency": "refuses input, changes no result",
+    "first_sidecar.cpp:kLead": "refuses input, changes no result",
+    "kHelium": "refuses input, changes no result",
+    "kRadian": "mathematics",
+    "kSwaySmooth": "used for legs without ankle roll, which no robot of the cases has",
+    "kZmpStep": "used for legs without ankle roll, which no robot of the cases has",
+    "kInsideShare": "used for legs without ankle roll, which no robot of the cases has",
+    "kNotMeasured": "an identifier",
+    "check/consistency.cpp:kBlockSamples": "divides work between threads, changes no result",
+    "check/consistency.cpp:kBlocksAtOnce": "divides work between threads, changes no result",
+    "first_sidecar": "a guess that `init` writes into the sidecar with a request to replace it",
     "differentiate": "the reach of a formula",
 }
 
@@ -151,12 +165,13 @@ def constants_of(path, text):
 def rewrite(path, text, found):
     def one(match, front, declarators):
         kind, made = match["kind"], []
-        for name, value in declarators:
-            full = front + name.replace("[]", "")
-            why = left_out(full)
-            if why:
-                found.append((full, value, why))
-                return match[0]
+        full_names = [front + name.replace("[]", "") for name, _ in declarators]
+        reasons = [why for why in map(left_out, full_names) if why]
+        if reasons:  # the whole declaration stays as it is
+            found.extend((full, value, left_out(full) or reasons[0])
+                         for full, (_, value) in zip(full_names, declarators))
+            return match[0]
+        for full, (name, value) in zip(full_names, declarators):
             if kind == "Backoff":
                 values = []
                 for field, v in zip(BACKOFF, split(value.strip("{}"))):
@@ -436,6 +451,35 @@ def make_patterns():
     with_scenario(ROOT / "patterns/hoap1_hop3.json", "viip_hops", [])
     with_scenario(ROOT / "patterns/hoap1_viip_shift.json", "viip_shift", [])
 
+    # A robot whose elbows rest at their limits.
+    folder = WORK / "robots/resting"
+    shutil.rmtree(folder, ignore_errors=True)
+    shutil.copytree(ROOT / "robots/hoap1", folder)
+    urdf = folder / "robot.urdf"
+    urdf.write_text(re.sub(r'(<joint name="[lr]_elbow".*?upper=")[^"]*', rf'\g<1>{math.radians(-25)!r}',
+                           urdf.read_text(), flags=re.S))
+    with_scenario(WORK / "knee.json", "knee, elbows at a limit", [],
+                  lambda p: p.update(robot="resting"))
+
+    # A jump from keys alone.
+    heights = [(0, 0.582), (1.265, 0.528), (1.4, 0.57), (1.54, 0.57), (1.675, 0.528), (2.94, 0.582)]
+    (WORK / "tall jump.json").write_text(json.dumps(
+        {"format": "ayumi.pattern/1", "name": "jump", "robot": "humanoid30",
+         "phases": [{"until": 1.4, "support": "both"}, {"until": 1.54, "support": "none"},
+                    {"until": 2.94, "support": "both"}],
+         "keyframes": [{"t": t, "cog": {"height": z}} for t, z in heights]}))
+
+    # The recording of a run: load cells with zeros of -8 N and -2 N, 10 ms late.
+    program("simulate", "walk.json", "-o", "walk_run", "--force")
+    program("export", "walk_run", "--format", "csv-log", "-o", "walk_log.csv", "--force")
+    log = [l.split(",") for l in (WORK / "walk_log.csv").read_text().splitlines() if l[0] != "#"]
+    kept = [i for i, c in enumerate(log[0]) if c.startswith(("t[", "theta"))]
+    (WORK / "measured_angles.csv").write_text("\n".join(",".join(r[i] for i in kept) for r in log) + "\n")
+    left, right = (log[0].index(f"{side}.force.z[N]") for side in ("left", "right"))
+    cells = [f"{after[0]},{float(r[left]) - 8:.3f},{float(r[right]) - 2:.3f}"
+             for r, after in zip(log[1:], log[11:])]
+    (WORK / "measured_loads.csv").write_text("\n".join(["t[s],fz.left[N],fz.right[N]"] + cells) + "\n")
+
     for name, goal in GOALS.items():
         with_scenario(WORK / "steps.json", name, [],
                       lambda p: p.update(phases=[{"until": 3, "viip": goal}]))
@@ -460,6 +504,10 @@ repair_case("repair cog, trusted", "cog.json", "--trust", "cog")
 repair_case("repair arm, foot locked", "arm.json", "--lock", "foot:left")
 repair_case("repair arm, time locked", "arm.json", "--lock", "0.3..0.35")
 repair_case("repair arm, locked", "arm.json", "--lock", "l_elbow")
+ROBOTS = ["--robot-path", "robots"]
+repair_case("repair jolt", "jolt.json")
+repair_case("repair knee, elbows at a limit", "knee, elbows at a limit.json", *ROBOTS)
+repair_case("tall jump", "tall jump.json", "--from-scratch")
 for good in ("walk", "jump", "walk_table"):
     check_case("check " + good, good + ".json")
 for run in ("walk", "pushed_walk", "rough_walk", "pushed_stand", "thrown_stand", "steps",
@@ -494,6 +542,20 @@ def import_case(scale):
     times = {f"contact {i + 1}": f"{c['foot']} {c['begin_s']:.3f}-{c['end_s']:.3f} s"
              for i, c in enumerate(contacts)}
     return {"outcome": f"{len(contacts)} contacts", **times}
+
+
+@case("compare")
+def compare_case(scale):
+    r = figures_of(program("--json", "compare", "walk_run", "measured_angles.csv",
+                           "measured_loads.csv", scale=scale))
+    if "loads" not in r:
+        return r
+    result = {"outcome": f"{len(r['notes'])} notes", "landings apart": r["landings_unmatched"],
+              "landings differ by": r["landing_max_s"]}
+    for load in r["loads"]:
+        result.update({f"{load['name']}, mean difference": load["mean"],
+                       f"{load['name']}, late_s": load["lag_s"]})
+    return result
 
 
 def threshold_case(name, pattern, at, *words):
@@ -543,6 +605,11 @@ FOOTHOLDS = [w + " walk, moved footholds" for w in ("pushed", "crossing", "hurri
 # The first of these patterns that occurs in a constant's name says which cases can depend on the
 # constant.
 CASES_OF = [
+    ("kFlightRamps", ["tall jump"]),
+    ("kHeights", ["tall jump"]),
+    ("repair.*kRestingSpeed", REPAIRS + ["repair knee, elbows at a limit"]),
+    ("repair.*rough", ["repair jolt"]),
+    ("repair.*kKink", REPAIRS + ["repair collision", "repair arm, locked", "repair jolt"]),
     ("repair.*flight|repair.*Flight", REPAIRS + ["repair flight"]),
     ("repair.*(riction|solver|tighten|rounds|Backoff|Active|Beside)", REPAIRS + ["repair grip"]),
     ("repair.*infeasible", ["repair arm, locked"]),
@@ -575,6 +642,7 @@ CASES_OF = [
     ("study/runs", ["largest push, standing"]),
     ("study", PUSHES),
     ("import", ["import"]),
+    ("identify/compare", ["compare"]),
 ]
 
 
@@ -588,7 +656,8 @@ def cases_for(name):
 FLOORS = [("_m_s2", 1), ("_m_s", 2e-3), ("_rad_s2", 10), ("_rad", 2e-3), ("_m", 2e-4), ("_s", 0.005),
           ("_N", 0.2), ("_Nm", 0.02), ("ratio", 0.02), ("margin", 5e-4), ("moved", 2e-4),
           ("push", 0.02), ("iterations", 10), ("joints moved", 3), ("change", 1e-4),
-          ("missing safety", 1e-3), ("share of the time", 0.002)]
+          ("missing safety", 1e-3), ("share of the time", 0.002), ("mean difference", 0.05),
+          ("differ by", 0.002)]
 PART = 0.05  # a change of a figure by less than this part does not count
 
 
@@ -702,34 +771,59 @@ def summary_of(before, after):
 START, END = "<!-- table: constants -->", "<!-- end -->"
 
 
-def write_page(results, found, commit):
-    lines = []
+def rows_of_page(text):
+    """{name of a constant: its row} of the page."""
+    rows, room = {}, ""
+    for line in text.splitlines():
+        if line.startswith("### "):
+            room = line[4:]
+        match = re.match(r"\| `([^`]+)`\*? \| ", line)
+        if match:
+            rows[f"{room}:{match[1]}"] = line
+    return rows
+
+
+def write_page(results, found, commit, whole=True):
+    """Writes the rows that are measured. If not all constants were measured, the page keeps its
+    other rows, and the new ones get an asterisk."""
+    text = PAGE.read_text()
+    before, rest = text.split(START, 1)
+    table, after = rest.split(END, 1)
+    kept = {} if whole else rows_of_page(table)
+    if whole:
+        note = f"Commit {commit}, {datetime.date.today()}: `docs/measurements/constants.py`"
+    else:
+        note = (re.search(r"^Commit .*?constants.py`", table, re.M)[0] + ". Rows with an asterisk were"
+                f" measured later, at commit {commit} on {datetime.date.today()}, with the names of"
+                " these constants as arguments.")
     rooms = {}
     for name, value, why in found:
-        rooms.setdefault(name.split(":")[0], []).append((name, value, why))
-    for room, constants in rooms.items():
-        measured = [(n, v) for n, v, why in constants if not why and n + "=0.5" in results
-                    and n + "=2" in results]
-        if not measured:
+        if why:
             continue
-        lines += ["", f"### {room}", "", "| constant | value | at half | at twice |",
-                  "| --- | --- | --- | --- |"]
-        for name, value in measured:
+        if name + "=0.5" in results and name + "=2" in results:
             cells = [summary_of({c: results["base"][c] for c in results[name + "=" + f]},
                                 results[name + "=" + f]) for f in ("0.5", "2")]
             shown_value = value.replace("|", "\\|")
-            lines.append(f"| `{name.split(':', 1)[1]}` | {shown_value} | {cells[0]} | {cells[1]} |")
+            mark = "" if whole else "*"
+            line = f"| `{name.split(':', 1)[1]}`{mark} | {shown_value} | {cells[0]} | {cells[1]} |"
+        elif name in kept:
+            line = kept[name]
+        else:
+            continue
+        rooms.setdefault(name.split(":")[0], []).append(line)
+    lines = []
+    for room, rows in rooms.items():
+        lines += ["", f"### {room}", "", "| constant | value | at half | at twice |",
+                  "| --- | --- | --- | --- |", *rows]
     lines += ["", "### Left out", "",
               "These constants were not measured, for the reason that is stated before their names:", ""]
     for why in sorted({w for _, _, w in found if w}):
         names = [f"`{n.split('/')[-1]}`" for n, _, w in found if w == why]
         lines += textwrap.wrap(f"- {why}: {', '.join(names)}", 150, subsequent_indent="  ",
                                break_long_words=False, break_on_hyphens=False)
-    note = f"Commit {commit}, {datetime.date.today()}: `docs/measurements/constants.py`"
-    text = PAGE.read_text()
-    before, rest = text.split(START, 1)
-    _, after = rest.split(END, 1)
-    PAGE.write_text(before + START + "\n" + "\n".join(lines + ["", note]).lstrip("\n") + "\n" + END + after)
+    PAGE.write_text(before + START + "\n" +
+                    "\n".join(lines + ["", *textwrap.wrap(note, 150, break_long_words=False,
+                                                         break_on_hyphens=False)]).lstrip("\n") + "\n" + END + after)
 
 
 def head():
@@ -775,8 +869,7 @@ def main(words):
             same = {c: results["base"][c] for c in results[scale]}
             print(f"{number}/{len(chosen)} {scale}, {time.time() - begin:.0f} s:",
                   summary_of(same, results[scale]), flush=True)
-    if not words:
-        write_page(results, found, results["commit"])
+    write_page(results, found, results["commit"], whole=not words)
 
 
 if __name__ == "__main__":

@@ -532,6 +532,26 @@ def law_gains():
     return lines
 
 
+@table("law/q")
+def law_q():
+    lines = head("pattern", "q = 0.25", "q = 0.6", "q = 1")
+    for name, noise in (("", ()), (", `--noise`", ("--noise",))):
+        walks, stands, sways = [], [], []
+        for q in (0.25, 0.6, 1):
+            study = push_study(LARGE_WALK, *FOUR, *noise, *gain(f"q={q}"))
+            walks.append(in_bounds(cases(study, False)))
+            stands.append(in_bounds(cases(study, True)))
+            study = push_study(sway("humanoid30"), *FOUR, *noise, *gain(f"q={q}"))
+            sways.append(in_bounds(cases(study, False)))
+        for what, cells in (("walk", walks), ("standing", stands), ("sway", sways)):
+            lines.append(row(f"{what}{name}: worst and mean push [B]", *cells))
+    for name, words in (("", ()), (", `--noise`", ("--noise",))):
+        lines.append(row(f"walk without a push{name}: ZMP error [mm]", *[
+            mm(simulate(LARGE_WALK, "--scenario", "none", *words,
+                        *gain(f"q={q}"))["zmp_tracking_rms_m"]) for q in (0.25, 0.6, 1)]))
+    return lines
+
+
 # ---- Conditions that the plan does not know ----
 
 

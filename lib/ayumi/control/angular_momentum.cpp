@@ -24,13 +24,13 @@ namespace {
 
 // Rate at which the turn of the trunk returns to zero with critical damping, as a multiple of
 // omega. Chosen: slower than the DCM, so that the return does not undo the effect of the turn. The
-// largest pushes that the walk of HOAP-1 survives in 32 cases are at least 1.14 B, and 1.52 B in
-// the mean; with 0.7, one of them is 1.02 B instead of 1.44 B.
+// pushes that the walk of HOAP-1 survives depend little on it: in 32 cases, worst and mean are 1.08
+// and 1.52 B, and 1.08 and 1.53 B with 0.7.
 constexpr double kReturnRate = 0.5;
 
-// Largest turn of the trunk [rad]: 24 deg. Chosen: with 0.35 the walk of HOAP-1 with hoap1-strong
-// survives 1.20 B, with 0.42 1.26 B; with 0.5 three more of 32 pushes become harder to survive for
-// its real motors than without any turn.
+// Largest turn of the trunk [rad]: 24 deg. Chosen: the walk of HOAP-1 with hoap1-strong survives
+// 1.20 B in the worst of 32 cases; with 0.35 it survives 1.14 B, and with 0.5 a push in the double
+// support has this limit, too.
 constexpr double kTrunkRange = 0.42;
 
 // Largest tilt of the trunk, which is the sum of the plan's tilt and the turn [rad]: 37 deg.

@@ -32,65 +32,56 @@ namespace {
 // multiples of 1 / omega.
 
 // Share of each support that is kept in reserve. Chosen: the robot differs from the point mass.
-// With half of the value, the slip of the case "hurried walk" changes from 5.22 to 8.86 mm; with
-// twice, the slip of the case "pushed walk" changes from 1.45 to 0.875 mm.
+// Half or twice the value changes measured cases by 5 % or more (constants.md).
 constexpr double kReserve = 0.2;
 
 // Share of the landing foot's support that is taken into account. Chosen: the ZMP only gets there
-// in the course of the double support. With half of the value, the number of touchdowns of the case
-// "hurried walk" changes from 5 to 7; with twice, the number of touchdowns of the case "pushed
-// walk" changes from 4 to 5.
+// in the course of the double support. Half or twice the value changes measured cases by 5 % or
+// more (constants.md).
 constexpr double kNextSupportShare = 0.5;
 
 // Largest distance of a foothold from the foothold of the pattern [z]. Chosen: within the reach of
-// the legs with the COG at the height of a walk. With half of the value, the number of touchdowns
-// of the case "thrown walk" changes from 6 to 5; with twice, the slip of the case "thrown walk"
-// changes from 2.98 to 2.54 mm.
+// the legs with the COG at the height of a walk. Half or twice the value changes measured cases by
+// 5 % or more (constants.md).
 constexpr double kFootholdReach = 0.36;
 
 // Largest speed of a foot's shift [omega z]. Chosen: the swing itself needs the rest of the joint
-// speed of HOAP-1. With half of the value, the number of touchdowns of the case "thrown walk"
-// changes from 6 to 5; with twice, the number of touchdowns of the case "hurried walk" changes from
-// 5 to 6.
+// speed of HOAP-1. Half or twice the value changes measured cases by 5 % or more (constants.md).
 constexpr double kFootSpeed = 0.65;
 
 // Smallest error at the landing to which a foothold reacts [z]: 4 mm on HOAP-1. Chosen: the sole
-// absorbs smaller errors. With half of the value, the joint speed of the case "crossing walk"
-// changes from 0.738 to 0.958; with twice, the number of touchdowns of the case "hurried walk"
-// changes from 5 to 8.
+// absorbs smaller errors. Half or twice the value changes measured cases by 5 % or more
+// (constants.md).
 constexpr double kLeastError = 0.02;
 
 // A foothold is chosen from this time before lift-off on [1/omega]. Chosen: before this time, the
-// present support can still remove the error. With half of the value, the number of touchdowns of
-// the case "thrown walk" changes from 6 to 5; with twice, nothing changes.
+// present support can still remove the error. Half or twice the value changes measured cases by 5 %
+// or more (constants.md).
 constexpr double kLookAhead = 1;
 
 // Cost of moving a foothold by a length, relative to the cost of a remaining error of the same
 // length. Chosen: a larger movement is preferred if it reduces the remaining error by at least a
-// third of the additional distance. With half of the value, the slip of the case "hurried walk"
-// changes from 5.22 to 9.26 mm; with twice, to 4.57 mm.
+// third of the additional distance. Half or twice the value changes measured cases by 5 % or more
+// (constants.md).
 constexpr double kMoveCost = 0.3;
 
 // Cost of the clock's rate 1 [z]. Chosen: small, so that a faster clock is chosen whenever it
-// leaves a smaller error. Of two clocks that leave the same error, the slower one is chosen. With
-// half of the value, the slip of the case "hurried walk" changes from 5.22 to 4.57 mm; with twice,
-// to 8.97 mm.
+// leaves a smaller error. Of two clocks that leave the same error, the slower one is chosen. Half
+// or twice the value changes measured cases by 5 % or more (constants.md).
 constexpr double kTimeScaleCost = 0.016;
 
-// Step between the rates of the clock that are tried. Chosen: 16 candidates up to 2.5. With half of
-// the value, figures change by less than 5 %; with twice, the number of touchdowns of the case
-// "hurried walk" changes from 5 to 6.
+// Step between the rates of the clock that are tried. Chosen: 16 candidates up to 2.5. Half or
+// twice the value changes measured cases by 5 % or more (constants.md).
 constexpr double kTimeScaleStep = 0.1;
 
 // A force on the swing foot before this share of the swing is not a landing. Chosen: a foot that
-// has just left the ground still drags; a tipped robot's foot may land soon after. With half of the
-// value, the number of touchdowns of the case "thrown walk" changes from 6 to 4; with twice,
-// nothing changes.
+// has just left the ground still drags; a tipped robot's foot may land soon after. Half or twice
+// the value changes measured cases by 5 % or more (constants.md).
 constexpr double kSwingLandingAfter = 0.3;
 
 // Longest double support over which the shift of the ZMP counts as a ramp [1/omega]. Chosen: the
-// part of a ramp after this time has less than a third of its effect on the DCM. With half of the
-// value, the slip of the case "thrown walk" changes from 2.98 to 2.39 mm; with twice, to 2.27 mm.
+// part of a ramp after this time has less than a third of its effect on the DCM. Between half and
+// twice the value, figures change by less than 5 %.
 constexpr double kLongestRamp = 1.3;
 
 // Peak speed of a path of least jerk from rest to rest, in units of its mean speed. Derived: 15/8,

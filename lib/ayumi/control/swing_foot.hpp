@@ -13,9 +13,8 @@
 namespace ayumi {
 
 /// Smallest distance between the inner sides of two soles beside each other [m]. Chosen: a few
-/// times the error with which a foot lands, 1.5 mm on HOAP-1. With half of the value, the tilt of
-/// the case "crossing walk" changes from 0.2 to 0.216 rad; with twice, the ZMP error of the case
-/// "pushed steps" changes from 9.6 to 10.5 mm.
+/// times the error with which a foot lands, 1.5 mm on HOAP-1. Half or twice the value changes
+/// measured cases by 5 % or more (constants.md).
 inline constexpr double kSoleClearance = 0.008;
 
 /// Half the distance between a sole's sides [m].
@@ -56,9 +55,7 @@ class SwingReplan {
  private:
   // A path is never planned for a shorter time than this [s], because jerks grow with 1 / t^3.
   // Chosen: 30 ticks of 1 ms; with half of it, a target that moves in the last ticks requires eight
-  // times the jerk. With half of the value, the number of touchdowns of the case "pushed viip walk"
-  // changes from 5 to 4; with twice, the slip of the case "hurried walk" changes from 5.22 to 4.03
-  // mm.
+  // times the jerk. Half or twice the value changes measured cases by 5 % or more (constants.md).
   static constexpr double kLeastTime = 0.03;
 
   Vector rate_ = Vector::Zero(), acceleration_ = Vector::Zero();

@@ -28,8 +28,8 @@ using Eigen::Vector3d;
 namespace {
 
 // A goal counts as reached if the COG is within this distance [m]. Chosen: half of the 2 mm to
-// which a displacement is to settle. With half of the value, the possible goal of the case "low
-// goal" changes from -66.4 to -65.8 mm; with twice, to -67.6 mm.
+// which a displacement is to settle. Between half and twice the value, figures change by less than
+// 5 %.
 constexpr double kGoalReached = 0.001;
 
 // Length of the ticks in which the reference is moved to a goal [s], and their largest number.
@@ -40,8 +40,8 @@ constexpr double kLeadTick = 0.004;
 constexpr int kLeadTicks = 1500;
 
 // Time in which the reference moves the remaining distance [s], and its largest speed [m/s].
-// Chosen: so slow that only position limits count. With half of the value, the possible goal of the
-// case "low goal" changes from -66.4 to -66.6 mm; with twice, nothing changes.
+// Chosen: so slow that only position limits count. Between half and twice the value, figures change
+// by less than 5 %.
 constexpr double kLeadTime = 0.1;
 // No measured case changes between half and twice the value (constants.md).
 constexpr double kLeadSpeed = 0.1;
@@ -51,18 +51,16 @@ constexpr double kLeadSpeed = 0.1;
 constexpr double kLowestShare = 0.3;
 
 // Number of bisections in the search for the possible part of a goal. Chosen: the result is
-// accurate to a thousandth of the goal. With half of the value, the possible goal of the case "far
-// goal" changes from 46.5 to 45.0 mm; with twice, the possible goal of the case "low goal" changes
-// from -66.4 to -66.6 mm.
+// accurate to a thousandth of the goal. Between half and twice the value, figures change by less
+// than 5 %.
 constexpr int kHalvings = 10;
 
 // Number of steps of the keyed walk that is judged instead of a goal. Chosen: a longer walk repeats
 // itself. No measured case changes between half and twice the value (constants.md).
 constexpr int kMostKeyedSteps = 6;
 
-// Largest turn in one step [rad]: 20 deg. Chosen: soles beside each other must not meet. With half
-// of the value, the possible goal of the case "turning goal" changes from 20.1 to 10.0 deg; with
-// twice, the turning goal is accepted.
+// Largest turn in one step [rad]: 20 deg. Chosen: soles beside each other must not meet. Half or
+// twice the value changes measured cases by 5 % or more (constants.md).
 constexpr double kStepTurnLimit = 0.35;
 
 const CommandSample& held_in(const CommandSeries& series, const ViipSpan& span) {

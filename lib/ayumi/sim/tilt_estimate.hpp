@@ -30,9 +30,8 @@ class TiltEstimate {
 };
 
 /// Time constant with which gravity corrects the attitude [s]. Chosen: several steps of a walk,
-/// whose accelerations have no mean, and short against the drift of a gyro. With half of the value,
-/// the number of touchdowns of the case "pushed walk with noise" changes from 8 to 6; with twice,
-/// to 7.
+/// whose accelerations have no mean, and short against the drift of a gyro. Half or twice the value
+/// changes measured cases by 5 % or more (constants.md).
 constexpr double kTiltTime = 5.0;
 
 }  // namespace ayumi

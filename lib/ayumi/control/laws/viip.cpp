@@ -38,9 +38,8 @@ using Eigen::Vector3d;
 namespace {
 
 // If less than this time is left to a landing, the regulator no longer aims at it [s]. Chosen: the
-// ZMP that it requires grows with 1 / (1 - E); later, only the foothold can still answer. With half
-// of the value, the torque of the case "pushed steps" changes from 0.499 to 0.452; with twice, the
-// number of touchdowns of the case "pushed viip walk" changes from 5 to 4.
+// ZMP that it requires grows with 1 / (1 - E); later, only the foothold can still answer. Half or
+// twice the value changes measured cases by 5 % or more (constants.md).
 constexpr double kLeastTimeToLanding = 0.06;
 
 // The weight shift ends when the DCM is within this distance of the place where the first step
@@ -50,18 +49,18 @@ constexpr double kLeastTimeToLanding = 0.06;
 constexpr double kShiftDone = 0.027;
 
 // Smallest duration of the weight shift, as a multiple of 1/omega: 0.36 s on HOAP-1. Chosen with
-// the prototype: the regulator settles within this time. With half of the value, the slip of the
-// case "pushed steps" changes from 0.0809 to 1.96 mm; with twice, the steps are refused.
+// the prototype: the regulator settles within this time. Half or twice the value changes measured
+// cases by 5 % or more (constants.md).
 constexpr double kShiftTime = 2.4;
 
 // Time that is reserved for standing after timed steps, as a multiple of 1/omega. Chosen: exp(-5)
-// of an error is left. With half of the value, nothing changes; with twice, the steps are refused.
+// of an error is left. Half or twice the value changes measured cases by 5 % or more
+// (constants.md).
 constexpr double kSettleTime = 5;
 
 // A force on the swing foot before this share of the swing is not a landing. Chosen with the
 // prototype: a foot still drags after its lift-off, and a landing is early by at most a third of a
-// swing. With half of the value, nothing changes; with twice, the number of touchdowns of the case
-// "steps" changes from 2 to 4.
+// swing. Half or twice the value changes measured cases by 5 % or more (constants.md).
 constexpr double kStepLandingAfter = 0.6;
 
 // Largest factor by which a step may be speeded up so that it lands earlier, relative to its
@@ -81,8 +80,8 @@ constexpr double kBiasShare = 0.5;
 constexpr double kLandingBiasLimit = 0.015;
 
 // Time after which a lasting tilt of the stance foot counts as a slope of the ground, as a multiple
-// of 1/omega: 1 s on HOAP-1. Chosen: equal to the offset time of DTAD. Between half and twice the
-// value, figures change by less than 5 %.
+// of 1/omega: 1 s on HOAP-1. Chosen: equal to the offset time of DTAD. Half or twice the value
+// changes measured cases by 5 % or more (constants.md).
 constexpr double kSlopeTime = 6.6;
 
 // Time constant of the low pass of the vertical push that the load cells measure [s]; the lag of

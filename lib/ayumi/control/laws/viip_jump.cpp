@@ -57,8 +57,8 @@ constexpr double kStoopReached = 0.01;
 constexpr double kStoopLean = 1.2;
 
 // sqrt(K_Pz / m) after the landing, as a multiple of omega. Chosen: the COG is back at ref z_G
-// within the 0.6 s that the acceptance test requires. With half of the value, the ZMP error of the
-// case "viip jump" changes from 3.39 to 4 mm; with twice, figures change by less than 5 %.
+// within the 0.6 s that the acceptance test requires. Half or twice the value changes measured
+// cases by 5 % or more (constants.md).
 constexpr double kSettleRate = 2.2;
 
 // Ground force that counts as zero [N], and the time for which it must last [s]. Measured with the
@@ -68,14 +68,13 @@ constexpr double kNoForce = 0.5;
 constexpr double kNoForceTime = 0.015;
 
 // Largest rate of a servo target, as a multiple of the joint's speed limit: targets lead the joint
-// by (delay + kd/kp) dtheta + tau/kp. Chosen: this lead must build up within the push. With half of
-// the value, the slip of the case "viip jump" changes from 1.3 to 2.69 mm; with twice, the ZMP
-// error of the case "viip jump" changes from 3.39 to 1.31 mm.
+// by (delay + kd/kp) dtheta + tau/kp. Chosen: this lead must build up within the push. Between half
+// and twice the value, figures change by less than 5 %.
 constexpr double kTargetRate = 3;
 
 // Time over which the torque feedforward is faded in and out [s]. Chosen: within the stoop, and
-// long against the lag of servos, up to 20 ms. Between half and twice the value, figures change by
-// less than 5 %.
+// long against the lag of servos, up to 20 ms. Half or twice the value changes measured cases by 5
+// % or more (constants.md).
 constexpr double kTorqueFadeTime = 0.3;
 
 // Time constant with which the motion of the legs decays after release [s]. Source:
@@ -95,8 +94,8 @@ constexpr double kRetractionHold = 0.010;
 constexpr double kRetractionShare = 0.9;
 
 // Longest retraction as a share of the flight. Chosen: the legs then have the middle of the flight
-// to swing to their landing places. With half of the value, the slip of the case "viip hops"
-// changes from 1.44 to 1.7 mm; with twice, nothing changes.
+// to swing to their landing places. Half or twice the value changes measured cases by 5 % or more
+// (constants.md).
 constexpr double kRetractionFlightShare = 0.4;
 
 // Time after release in which forces do not yet mean a touchdown [s]. Chosen with the prototype:
@@ -106,11 +105,11 @@ constexpr double kTouchdownBlindTime = 0.040;
 
 // A touchdown is a force of the first share of the weight that lasts for the time [s], or a force
 // of the second, larger share at once. Chosen: above the noise of the load cells, within three
-// ticks of the impact. No measured case changes between half and twice the value (constants.md).
+// ticks of the impact. Between half and twice the value, figures change by less than 5 %.
 constexpr double kTouchdownShare = 0.1;
 // No measured case changes between half and twice the value (constants.md).
 constexpr double kTouchdownTime = 0.003;
-// No measured case changes between half and twice the value (constants.md).
+// Half or twice the value changes measured cases by 5 % or more (constants.md).
 constexpr double kHardTouchdownShare = 0.4;
 
 // A flight that is longer than planned by this ends as if the feet had touched down [s]. Chosen:
@@ -121,15 +120,13 @@ constexpr double kLateTouchdown = 0.15;
 // Correction of the feet in flight [1/s], pull towards the held posture [1/s], damping of the
 // flight's solve (times trace / rows) and the length that makes its angular rows comparable with
 // linear ones [m]. Chosen as in control/whole_body; the feet only have the 0.1 s of the flight.
-// With half of the value, the ZMP error of the case "viip hops" changes from 6.45 to 7.47 mm; with
-// twice, to 6.12 mm.
+// Half or twice the value changes measured cases by 5 % or more (constants.md).
 constexpr double kFlightFootRate = 40;
 // Between half and twice the value, figures change by less than 5 %.
 constexpr double kFlightPostureRate = 2;
-// Between half and twice the value, figures change by less than 5 %.
+// Half or twice the value changes measured cases by 5 % or more (constants.md).
 constexpr double kFlightDamping = 1e-5;
-// With half of the value, figures change by less than 5 %; with twice, the slip of the case "viip
-// jump" changes from 1.3 to 1.51 mm.
+// Half or twice the value changes measured cases by 5 % or more (constants.md).
 constexpr double kFlightLength = 0.2;
 
 double smooth_rise(double x) {
