@@ -183,8 +183,8 @@ Task load_or_explain(const Context& context, const std::string& file, const Chec
   try {
     return load_pattern(context, file, options.input);
   } catch (const Error& error) {
-    const bool is_of_numbers =
-        error.code() == ErrorCode::bad_pattern && !error.place().unknown_name;
+    const bool is_of_numbers = error.code() == ErrorCode::bad_pattern &&
+                               !error.place().unknown_name && !error.place().names_remedy;
     if (!is_of_numbers || file == "-") throw;
     explain(context, error, file, options);
   }
