@@ -222,6 +222,7 @@ Checked checked_one(const Context& context, const CheckCommand& options, const s
   append(parts, mistake_parts(mistakes, report.consistent));
   append(parts, remark_parts(painted(Paint::caution, "scenario:") + " ", disturbed));
   if (!need.text.empty()) append(parts, remark_parts("", {need.text}));
+  if (!need.flight.empty()) append(parts, remark_parts("", {need.flight}));
   if (!own.empty())
     append(parts, remark_parts("with the robot's own motors, ",
                                {own + (has_encoders(input.robot)
@@ -248,6 +249,7 @@ Checked checked_one(const Context& context, const CheckCommand& options, const s
   json["actuators"] = {{"enough", need.text.empty()},
                        {"need", need.text.empty() ? Json(nullptr) : Json(need.text)},
                        {"sufficient_profiles", need.sufficient},
+                       {"flight", need.flight.empty() ? Json(nullptr) : Json(need.flight)},
                        {"own", own.empty() ? Json(nullptr) : Json(own)}};
   json["likely_mistakes"] = cause_texts(mistakes);
   json["with_disturbances"] = disturbed;
