@@ -198,6 +198,17 @@ TEST(ImpossibleValues, AFootKeyThatLiftsTheCog) {
   EXPECT_TRUE(impossible(pattern).empty());
 }
 
+// Soles that reach far outwards are wider than the distance of the feet, and do not overlap.
+TEST(LikelyMistakes, WideSolesBesideEachOtherAreNotExchanged) {
+  RobotDescription description = hoap1().description();
+  for (auto& [side, sole] : description.soles)
+    for (Eigen::Vector2d& corner : sole.polygon)
+      if (corner.y() * (side == "left" ? 1 : -1) > 0) corner.y() += side == "left" ? 0.04 : -0.04;
+  const RobotModel wide(description);
+  for (const Mistake& mistake : impossible_values(wide, sound_walk()))
+    EXPECT_EQ(mistake.words.find("lands on"), std::string::npos) << mistake.text();
+}
+
 // The whole motion has millions of samples, and the message must not wait for them.
 TEST(LikelyMistakes, AWalkInMillisecondsIsRefusedBeforeItIsSampled) {
   WalkParameters steps = walk_defaults(hoap1());

@@ -304,14 +304,17 @@ class Suspicions {
     say(found);
   }
 
-  /// Whether the boxes around both soles overlap if `between` is the displacement from one sole to
-  /// the other.
-  bool soles_overlap(const Vector3d& between) const {
-    Eigen::AlignedBox2d box;
-    for (const Eigen::Vector2d& corner : model_.sole(Side::left).polygon) box.extend(corner);
-    const Eigen::Vector2d size = box.sizes();
-    return std::abs(between.x()) < size.x() && std::abs(between.y()) < size.y() &&
-           std::abs(between.z()) < kLiftedKey;
+  /// Whether the boxes around both soles overlap if the sole of `foot` is at this place in the
+  /// frame of the other one.
+  bool soles_overlap(Side foot, const Vector3d& place) const {
+    const auto box_of = [&](Side side) {
+      Eigen::AlignedBox2d box;
+      for (const Eigen::Vector2d& corner : model_.sole(side).polygon) box.extend(corner);
+      return box;
+    };
+    const Eigen::AlignedBox2d common =
+        box_of(foot).translated(place.head<2>()).intersection(box_of(other(foot)));
+    return !common.isEmpty() && std::abs(place.z()) < kLiftedKey;
   }
 
   void crossings() {
@@ -321,7 +324,7 @@ class Suspicions {
       const Swing& swing = *feet_->phases()[i].swing;
       const double outwards = (swing.foot == Side::left ? 1 : -1) * landing(i).y();
       if (outwards > -kCrossing) {
-        if (soles_overlap(landing(i)))
+        if (soles_overlap(swing.foot, landing(i)))
           found.push_back({phase_place(i), std::string("the ") + name_of(swing.foot) +
                                                " foot lands on the " + name_of(other(swing.foot)) +
                                                " foot; perhaps left and right were exchanged"});
