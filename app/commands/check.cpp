@@ -183,8 +183,8 @@ Task load_or_explain(const Context& context, const std::string& file, const Chec
   try {
     return load_pattern(context, file, options.input);
   } catch (const Error& error) {
-    const bool is_of_numbers =
-        error.code() == ErrorCode::bad_pattern && !error.place().unknown_name;
+    const bool is_of_numbers = error.code() == ErrorCode::bad_pattern &&
+                               !error.place().unknown_name && !error.place().names_remedy;
     if (!is_of_numbers || file == "-") throw;
     explain(context, error, file, options);
   }
@@ -222,6 +222,7 @@ Checked checked_one(const Context& context, const CheckCommand& options, const s
   append(parts, mistake_parts(mistakes, report.consistent));
   append(parts, remark_parts(painted(Paint::caution, "scenario:") + " ", disturbed));
   if (!need.text.empty()) append(parts, remark_parts("", {need.text}));
+  if (!need.flight.empty()) append(parts, remark_parts("", {need.flight}));
   if (!own.empty())
     append(parts, remark_parts("with the robot's own motors, ",
                                {own + (has_encoders(input.robot)
@@ -248,6 +249,7 @@ Checked checked_one(const Context& context, const CheckCommand& options, const s
   json["actuators"] = {{"enough", need.text.empty()},
                        {"need", need.text.empty() ? Json(nullptr) : Json(need.text)},
                        {"sufficient_profiles", need.sufficient},
+                       {"flight", need.flight.empty() ? Json(nullptr) : Json(need.flight)},
                        {"own", own.empty() ? Json(nullptr) : Json(own)}};
   json["likely_mistakes"] = cause_texts(mistakes);
   json["with_disturbances"] = disturbed;

@@ -8,7 +8,9 @@
 #include <functional>
 
 #include "ayumi/author/generate/generate.hpp"
+#include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/task/task.hpp"
 #include "tests/support/hoap1.hpp"
 
 using namespace ayumi;
@@ -194,4 +196,49 @@ TEST(ImpossibleValues, AFootKeyThatLiftsTheCog) {
   // If the author has written a key of the height, the height is not doubted.
   pattern.keyframes[0].cog_height = 0.23;
   EXPECT_TRUE(impossible(pattern).empty());
+}
+
+// Soles that reach far outwards are wider than the distance of the feet, and do not overlap.
+TEST(LikelyMistakes, WideSolesBesideEachOtherAreNotExchanged) {
+  RobotDescription description = hoap1().description();
+  for (auto& [side, sole] : description.soles)
+    for (Eigen::Vector2d& corner : sole.polygon)
+      if (corner.y() * (side == "left" ? 1 : -1) > 0) corner.y() += side == "left" ? 0.04 : -0.04;
+  const RobotModel wide(description);
+  for (const Mistake& mistake : impossible_values(wide, sound_walk()))
+    EXPECT_EQ(mistake.words.find("lands on"), std::string::npos) << mistake.text();
+}
+
+// The whole motion has millions of samples, and the message must not wait for them.
+TEST(LikelyMistakes, AWalkInMillisecondsIsRefusedBeforeItIsSampled) {
+  WalkParameters steps = walk_defaults(hoap1());
+  steps.steps = 1;
+  Pattern pattern = walk_pattern(hoap1(), steps);
+  pattern.file = "walk.json";
+  for (Phase& phase : pattern.phases) phase.until *= 1000;
+  for (Keyframe& key : pattern.keyframes) key.t *= 1000;
+  const Progress watch = [](const ProgressEvent& event) { return event.stage != "sample"; };
+  try {
+    make_task(pattern, hoap1(), "", watch);
+    FAIL() << "a swing of minutes passed";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::bad_pattern) << error.what();
+    EXPECT_EQ(error.place().inside, "/phases/1");
+    EXPECT_NE(
+        std::string(error.what()).find("With all times read as ms, the pattern is consistent"),
+        std::string::npos)
+        << error.what();
+  }
+}
+
+// A robot may stand for as long as the author wants, so this is only a doubt.
+TEST(LikelyMistakes, ALongMotionWithoutSwingsIsOnlyDoubted) {
+  Pattern pattern = stand_pattern(hoap1(), 1200);
+  std::string caution;
+  const Progress watch = [&](const ProgressEvent& event) {
+    if (event.stage == "caution") caution = event.detail;
+    return event.stage != "sample";
+  };
+  EXPECT_THROW(make_task(pattern, hoap1(), "", watch), Interrupted);
+  EXPECT_NE(caution.find("divide them by 1000"), std::string::npos) << caution;
 }

@@ -642,6 +642,40 @@ TEST(PlantedMistakes, AShorterFlightIsNamedForAHopThatIsTooHigh) {
   EXPECT_TRUE(is_consistent(pattern, options)) << found;
 }
 
+// The motors of this robot have 0.3 times their speed. A shorter flight alone, or a lower lift-off
+// alone, is not enough.
+TEST(PlantedMistakes, ASmallerHopIsNamedForARobotWithSlowMotors) {
+  RobotDescription description = small().description();
+  for (ActuatorProfile& profile : description.profiles)
+    for (auto& [joint, speed] : profile.speed) speed *= 0.3;
+  const RobotModel slow(description);
+  Pattern pattern =
+      hop_with({{0.5, 0.245}, {1.3, 0.2}, {1.5, 0.23}, {1.62, 0.23}, {1.82, 0.2}, {2.6, 0.245}});
+  pattern.phases[1].until = 1.62;
+  const CheckOptions options = strong_options(pattern);
+  const std::string found = texts_of(likely_mistakes(slow, pattern, options));
+  std::smatch hop;
+  ASSERT_TRUE(std::regex_search(
+      found, hop,
+      std::regex(
+          "^/keyframes/2: the flight lasts 0.12 s, in which the robot rises by 18 mm; with a "
+          "smaller hop: a flight of ([0-9.]+) s .*, a COG height of ([0-9.]+) m at the "
+          "lift-off and ([0-9.]+) m at the landing, and the stoops \\(/keyframes/1 and "
+          "/keyframes/4\\) ([0-9.]+) s before the lift-off and ([0-9.]+) s after the landing, "
+          "the pattern is consistent")))
+      << found;
+  const double lands = 1.5 + std::stod(hop[1]), earlier = 1.62 - lands;
+  pattern.phases[1].until = lands;
+  pattern.phases[2].until -= earlier;
+  pattern.keyframes[1].t = 1.5 - std::stod(hop[4]);
+  pattern.keyframes[2].cog_height = std::stod(hop[2]);
+  pattern.keyframes[3].t = lands;
+  pattern.keyframes[3].cog_height = std::stod(hop[3]);
+  pattern.keyframes[4].t = lands + std::stod(hop[5]);
+  pattern.keyframes[5].t -= earlier;
+  EXPECT_TRUE(check_consistency(slow, sample(slow, pattern), options).consistent) << found;
+}
+
 TEST(PlantedMistakes, AMissingHeightAtAnEndOfAFlightIsNamed) {
   for (const size_t phase : {0u, 1u}) {
     Pattern pattern = jump_pattern(small(), jump_defaults(small()));

@@ -216,6 +216,14 @@ async function makesWhatIsNotThere(tab) {
     const said = await tab.run("return document.getElementById('said').textContent");
     expect(said.includes("block that repeats") && text() === repeated, "a key of a block says why it does not move: " + said);
   }
+  const fixedEnd = '[data-id="/phases/0/phases/0/until"]', block2 = text(), said2 = () => tab.run("return document.getElementById('said').textContent");
+  const sayNothing = () => tab.run("document.getElementById('said').textContent = ''");
+  await sayNothing();
+  await tab.drag(await tab.box(fixedEnd), [12, 0]);
+  expect((await said2()).includes("block that repeats") && text() === block2, "an end of a phase in a block says why it does not move: " + await said2());
+  await sayNothing();
+  await tab.run(`document.querySelector('${fixedEnd}').dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowRight", ctrlKey: true, bubbles: true }))`);
+  expect((await said2()).includes("block that repeats") && text() === block2, "and by keys: " + await said2());
   await tab.after(() => tab.click("#undo"));
   expect(text() === before, "and back");
   await tab.click(`[data-id="/phases/${phases.length - 1}"]`);

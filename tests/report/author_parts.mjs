@@ -468,6 +468,15 @@ test("the last key of a block before is not the beginning of the next one", () =
   assert.equal(edits.repeatPhases(plain.state, plain.document, 1, 2, 3).refused, undefined);
 });
 
+test("the first key of a leg joint takes the legs from the solver, and the page says so", () => {
+  const joints = [{ name: "l_knee", leg: true }, { name: "r_knee", leg: true }, { name: "l_elbow", leg: false }];
+  const state = { joints, tracks: [{ name: "zmp", kind: "zmp", keys: [] }, { name: "joint l_elbow", kind: "joint", joint: "l_elbow", keys: [] }] };
+  assert.match(edits.legWords(state, "l_knee"), /^l_knee is a joint of a leg.*no longer solved/);
+  assert.equal(edits.legWords(state, "l_elbow"), "");
+  const keyed = { joints, tracks: [...state.tracks, { name: "joint r_knee", kind: "joint", joint: "r_knee", keys: [] }] };
+  assert.equal(edits.legWords(keyed, "l_knee"), "", "the legs follow their keys already");
+});
+
 test("a block that repeats is refused where every round would be at the same place", () => {
   const places = [(one) => { one.document.keyframes[2].zmp = [0, 0.04]; }, (one) => { one.document.keyframes[3].cog = { x: 0.1 }; },
     (one) => { one.state.phases[1].swing = { foot: "left", to: [0.1, 0.04] }; }, (one) => { one.state.phases[2].repeated = true; }];

@@ -2,6 +2,8 @@
 // their height, their landing, and the quantities that are conserved during the flight.
 #include <gtest/gtest.h>
 
+#include <regex>
+
 #include "ayumi/author/generate/generate.hpp"
 #include "ayumi/check/actuator_need.hpp"
 #include "ayumi/control/viip_goals.hpp"
@@ -167,6 +169,11 @@ TEST(Hoap1Jump, GeneratedKeysNeedTheStrongActuators) {
                             " deg/s at ", "hoap1-strong, hoap1-strong-soft are strong enough"})
     EXPECT_NE(need.text.find(words), std::string::npos) << need.text;
   EXPECT_EQ(need.sufficient, (std::vector<std::string>{"hoap1-strong", "hoap1-strong-soft"}));
+  EXPECT_TRUE(std::regex_search(
+      need.flight,
+      std::regex("knee allows a flight of at most 0.0[0-9]+ s \\(a rise of [0-9.]+ mm\\) "
+                 "with the legs in these postures, but the flight lasts ")))
+      << need.flight;
 }
 
 TEST(Hoap1Jump, AGoalIsJudgedByItsKeyedJump) {

@@ -2,14 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/limits/amount_text.hpp"
+#include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
 
 namespace {
+
+// A joint that is too fast within this time before a lift-off or after a landing is fast because of
+// the flight [s]. Chosen: the last part of a push; a stoop lasts 0.1 to 0.3 s.
+constexpr double kBesideFlight = 0.1;
 
 // The error of this kind that is furthest beyond its limit.
 const Finding* worst(const ConsistencyReport& report, FindingKind kind) {
@@ -40,6 +46,44 @@ std::vector<std::string> missing(const RobotModel& model, const ConsistencyRepor
   return parts;
 }
 
+/// A time without contact [s].
+struct Flight {
+  double begin = 0, end = 0;
+};
+
+// The flight that makes a joint fast at this time, if there is one.
+std::optional<Flight> flight_at(const CommandSeries& series, double at) {
+  std::optional<Flight> flight;
+  for (size_t k = 0; k < series.samples.size(); ++k) {
+    const double t = static_cast<double>(k) * series.dt;
+    const bool flies = series.samples[k].support == Support::none;
+    if (flies && !flight) flight = {t, t};
+    if (flies) flight->end = t;
+    if (flies && k + 1 < series.samples.size()) continue;
+    if (flight && at > flight->begin - kBesideFlight && at < flight->end + kBesideFlight)
+      return flight;
+    flight.reset();
+  }
+  return {};
+}
+
+// At lift-off and landing the COG has the speed g T / 2, and in one posture the speed of a joint is
+// proportional to that of the COG. So the fastest joint bounds the duration T of the flight, and
+// the robot rises by g T^2 / 8.
+std::string flight_words(const CommandSeries& series, const ConsistencyReport& report) {
+  const Finding* f = worst(report, FindingKind::joint_speed);
+  const std::optional<Flight> flight = f ? flight_at(series, f->at) : std::nullopt;
+  if (!flight) return "";
+  const double lasts = flight->end - flight->begin + series.dt;
+  const double possible = std::abs(f->limit / f->worst) * lasts;
+  const auto rise = [](double duration) {
+    return text::brief(1e3 * kGravity * duration * duration / 8, 2) + " mm";
+  };
+  return f->where + " allows a flight of at most " + text::brief(possible, 2) + " s (a rise of " +
+         rise(possible) + ") with the legs in these postures, but the flight lasts " +
+         text::brief(lasts, 3) + " s (" + rise(lasts) + ")";
+}
+
 ActuatorNeed need_of(const RobotModel& model, const CommandSeries& series,
                      const CheckOptions& options, const ConsistencyReport& report) {
   ActuatorNeed need;
@@ -59,6 +103,7 @@ ActuatorNeed need_of(const RobotModel& model, const CommandSeries& series,
                    : (need.sufficient.size() > 1 ? "the profiles " : "the profile ") +
                          text::join(need.sufficient, ", ") +
                          (need.sufficient.size() > 1 ? " are strong enough" : " is strong enough"));
+  need.flight = flight_words(series, report);
   return need;
 }
 

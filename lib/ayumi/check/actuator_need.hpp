@@ -10,6 +10,9 @@ namespace ayumi {
 struct ActuatorNeed {
   std::string text;                     ///< the need in words; empty if the profile is enough
   std::vector<std::string> sufficient;  ///< other profiles that are enough
+  /// If joints are too fast because of a flight, the longest flight that the fastest of them allows
+  /// in the same postures, in words; else empty.
+  std::string flight = {};
 };
 
 /// The need that follows from `report`, the check of `series` with `options`. Only joint speed,

@@ -13,10 +13,12 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/json_pointer.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/check/consistency.hpp"
 #include "ayumi/check/mistake_search.hpp"
 #include "ayumi/check/raised_feet.hpp"
 #include "ayumi/motion/pattern_context.hpp"
 #include "ayumi/plan/foot_plan.hpp"
+#include "ayumi/plan/sample.hpp"
 
 namespace ayumi {
 
@@ -30,6 +32,8 @@ constexpr double kLongestSwing = 30;
 // No motion without a swing lasts longer [s]. Chosen: seconds written as milliseconds are a
 // thousand times too long.
 constexpr double kLongestStand = 1000;
+// A millisecond [s]. Definition.
+constexpr double kMillisecond = 1e-3;
 // A COG below this share of its height at home is nearer to the ground than folded legs allow.
 // Chosen: the deepest squat of HOAP-1 is at 0.6.
 constexpr double kLowestCog = 0.3;
@@ -86,6 +90,11 @@ class Suspicions {
     friction();
     pushes();
     late_disturbances();
+    return said_;
+  }
+
+  std::vector<Mistake> long_times() {
+    if (feet_) times();
     return said_;
   }
 
@@ -295,14 +304,17 @@ class Suspicions {
     say(found);
   }
 
-  /// Whether the boxes around both soles overlap if `between` is the displacement from one sole to
-  /// the other.
-  bool soles_overlap(const Vector3d& between) const {
-    Eigen::AlignedBox2d box;
-    for (const Eigen::Vector2d& corner : model_.sole(Side::left).polygon) box.extend(corner);
-    const Eigen::Vector2d size = box.sizes();
-    return std::abs(between.x()) < size.x() && std::abs(between.y()) < size.y() &&
-           std::abs(between.z()) < kLiftedKey;
+  /// Whether the boxes around both soles overlap if the sole of `foot` is at this place in the
+  /// frame of the other one.
+  bool soles_overlap(Side foot, const Vector3d& place) const {
+    const auto box_of = [&](Side side) {
+      Eigen::AlignedBox2d box;
+      for (const Eigen::Vector2d& corner : model_.sole(side).polygon) box.extend(corner);
+      return box;
+    };
+    const Eigen::AlignedBox2d common =
+        box_of(foot).translated(place.head<2>()).intersection(box_of(other(foot)));
+    return !common.isEmpty() && std::abs(place.z()) < kLiftedKey;
   }
 
   void crossings() {
@@ -312,7 +324,7 @@ class Suspicions {
       const Swing& swing = *feet_->phases()[i].swing;
       const double outwards = (swing.foot == Side::left ? 1 : -1) * landing(i).y();
       if (outwards > -kCrossing) {
-        if (soles_overlap(landing(i)))
+        if (soles_overlap(swing.foot, landing(i)))
           found.push_back({phase_place(i), std::string("the ") + name_of(swing.foot) +
                                                " foot lands on the " + name_of(other(swing.foot)) +
                                                " foot; perhaps left and right were exchanged"});
@@ -466,6 +478,27 @@ class Suspicions {
 std::vector<Mistake> impossible_values(const RobotModel& model, const Pattern& pattern) {
   if (pattern.table) return {};  // nobody wrote its values by hand
   return Suspicions(model, pattern).all();
+}
+
+std::optional<Mistake> times_in_ms(const RobotModel& model, const Pattern& pattern,
+                                   const CheckOptions& options) {
+  if (pattern.table) return {};
+  std::vector<Mistake> found = Suspicions(model, pattern).long_times();
+  if (found.empty()) return {};
+  Mistake mistake = std::move(found.front());
+  Pattern meant = pattern;
+  for (Phase& phase : meant.phases) phase.until *= kMillisecond;
+  for (Keyframe& key : meant.keyframes) key.t *= kMillisecond;
+  try {
+    const CommandSeries series =
+        sample(model, meant, {.dt = model.description().servo_period, .threads = options.threads});
+    mistake.explains_all = check_consistency(model, series, options).consistent;
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::bad_pattern) throw;
+  }
+  if (mistake.explains_all)
+    mistake.words += ". With all times read as ms, the pattern is consistent";
+  return mistake;
 }
 
 std::vector<Mistake> doubtful_values(const RobotModel& model, const Pattern& pattern) {

@@ -4,6 +4,7 @@
 // are tried one after the other (mistake_search). If no change helps, the values that the robot
 // cannot do are named, independently of the first error.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,13 @@ struct Mistake {
 /// The values that the robot cannot do. A consistent pattern may also contain some of them, so call
 /// this only if something is wrong. It takes very little time.
 std::vector<Mistake> impossible_values(const RobotModel& model, const Pattern& pattern);
+
+/// The first phase whose swing lasts longer than any swing of a robot, or the whole motion (place
+/// "") if it lasts longer than any motion without a swing: the times are probably milliseconds.
+/// `explains_all` says whether the motion with all times read as ms passes the check; only this
+/// short motion is computed. Returns nothing if the times are usual.
+std::optional<Mistake> times_in_ms(const RobotModel& model, const Pattern& pattern,
+                                   const CheckOptions& options);
 
 /// Mistakes that a consistent pattern may contain: a single support without a swing although the
 /// others have one, feet that do not stand on the ground, angles of a few degrees that look like

@@ -123,6 +123,9 @@ std::vector<Hypothesis> Hypotheses::of(Kind kind) const {
       return paces(*examined_);
     case Kind::small_swings:
       return small_swings(*examined_);
+    case Kind::hops:
+      if (examined_->pattern.table || examined_->pattern.correction) return {};
+      return found_by({hypotheses::smaller_hops}, *examined_);
   }
   return {};
 }

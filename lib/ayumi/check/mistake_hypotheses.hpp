@@ -49,7 +49,9 @@ class Hypotheses {
     missing,
     nearer,
     paces,
-    small_swings
+    small_swings,
+    /// Smaller hops: several changes at once, for motors that are too weak.
+    hops
   };
 
   /// The references must outlive the object.

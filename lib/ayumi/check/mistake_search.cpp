@@ -59,6 +59,9 @@ constexpr double kLargeChange = 0.05;
 // The size that is given to a change of sign or digit that removes only a part of the errors.
 // Definition: larger than all other changes.
 constexpr double kGuessed = 1e3;
+// Number of smaller hops that are tried if nothing else helps. Chosen: all of them, and twice as
+// many for legs of fewer than six joints, whose trials count more.
+constexpr int kHopTrials = 60;
 // Number of hypotheses of one kind that are tried. Chosen: more than there usually are, except for
 // errors that last for the whole motion.
 constexpr size_t kTriedOfOneKind = 64;
@@ -487,6 +490,28 @@ std::string before_result(const std::string& instead) {
   return instead + (instead.ends_with(',') ? " " : ", ");
 }
 
+// If no sequence of changes is enough: the first smaller hop that is, or else the one that leaves
+// the fewest errors at the servo's period, and fewer than `left`.
+std::optional<Candidate> smaller_hop(Trials trials, const RobotModel& model, const Pattern& pattern,
+                                     const TrialOutcome& found, int left) {
+  const Hypotheses hypotheses(model, pattern, found);  // the changes refer to it
+  std::vector<Hypothesis> hops = hypotheses.of(Hypotheses::Kind::hops);
+  std::vector<Mend> mends;
+  for (const Hypothesis& hop : hops) mends.push_back(hop.mend);
+  const std::vector<TrialOutcome> outcomes = trials.after(pattern, mends);
+  std::optional<Candidate> best;
+  for (size_t i = 0; i < hops.size() && !(best && best->outcome.good()); ++i) {
+    if (!outcomes[i].good()) continue;
+    const TrialOutcome exact = trials.exact() ? outcomes[i] : trials.exactly(pattern, hops[i].mend);
+    if (exact.errors < (best ? best->outcome.errors : left)) best = {std::move(hops[i]), exact};
+  }
+  if (!best) return best;
+  Explanation& says = best->hypothesis.says;
+  says.instead = before_result(says.instead) + words_at_period(found, best->outcome);
+  says.enough = best->outcome.good();
+  return best;
+}
+
 }  // namespace
 
 Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
@@ -502,6 +527,7 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
     trials.make_exact();
     found = trials.of(current);
   }
+  const TrialOutcome given = found;
   for (int round = 0; round < kRounds && !found.good() && !trials.ended(); ++round) {
     const int left_rounds = kRounds - round;
     std::optional<Search> search(std::in_place, trials, model, current, found, left_rounds);
@@ -568,6 +594,15 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
     if (left.table_alone) trials.make_exact();
     current = std::move(mended);
     found = left;
+  }
+  if (!found.good()) {
+    // These few trials are made even if the search ended, because nothing else names a way out.
+    const auto hop = smaller_hop(Trials(model, pattern, options, progress, kHopTrials), model,
+                                 pattern, given, found.errors);
+    if (hop) {
+      result.found = {hop->hypothesis.says};
+      found = hop->outcome;
+    }
   }
   result.trials = trials.made();
   result.complete = found.good() || !(trials.ended() || trials.left_out());

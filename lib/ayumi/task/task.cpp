@@ -1,6 +1,7 @@
 #include "ayumi/task/task.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/shortened_text.hpp"
@@ -9,6 +10,7 @@
 #include "ayumi/control/controller.hpp"
 #include "ayumi/control/viip_goals.hpp"
 #include "ayumi/limits/limit.hpp"
+#include "ayumi/motion/pattern_context.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "ayumi/sim/run_caution.hpp"
 #include "ayumi/task/payload_findings.hpp"
@@ -80,6 +82,26 @@ void refuse_unknown_gains(const Pattern& pattern, const RobotModel& robot) {
   });
 }
 
+// A motion whose times are in ms would be sampled for a minute before anything is said about it. No
+// robot swings a foot for so long, so such a pattern is refused if it is consistent with times in
+// ms. A motion without swings may be meant to last long; then this only reports the doubt.
+void refuse_times_in_ms(const Pattern& pattern, const RobotModel& robot, const std::string& profile,
+                        const Progress& progress, int threads) {
+  CheckOptions options;
+  options.profile = profile;
+  options.friction = pattern.world.friction;
+  options.tolerances = pattern.tolerances;
+  options.threads = threads;
+  const std::optional<Mistake> mistake = times_in_ms(robot, pattern, options);
+  if (!mistake) return;
+  if (mistake->explains_all && !mistake->place.empty()) {
+    SourcePlace place = in_file(pattern, mistake->place);
+    place.names_value = place.names_remedy = true;
+    fail(ErrorCode::bad_pattern, place, mistake->words);
+  }
+  report(progress, {"caution", 1, mistake->text()});
+}
+
 }  // namespace
 
 CommandSeries sample_at_servo_period(const RobotModel& robot, const Pattern& pattern,
@@ -95,6 +117,7 @@ Task make_task(Pattern pattern, RobotModel robot, const std::string& profile,
   if (profile.empty()) refuse_unknown_profile(pattern, robot);
   const std::string name = robot.limits(profile.empty() ? pattern.profile : profile).name;
   const double tick = robot.description().servo_period;
+  refuse_times_in_ms(pattern, robot, name, progress, threads);
   CommandSeries series = [&] {
     try {
       return sample_at_servo_period(robot, pattern, progress, threads);

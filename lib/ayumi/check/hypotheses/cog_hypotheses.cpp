@@ -37,6 +37,14 @@ constexpr double kStraightTakeOff = 0.85;
 // Shares of the length of a leg by which the COG is tried lower at the ends of a flight. Chosen:
 // 5 to 20 mm for a leg of 0.25 m.
 constexpr std::array kLowerTakeOffs = {0.02, 0.04, 0.06, 0.08};
+// Shares of the duration of a flight, and shares of the length of a leg by which the COG is lower
+// at its ends, that are tried together. Chosen: with the smallest share the robot rises by a tenth;
+// a joint that needs three times its largest speed is possible then.
+constexpr std::array kSmallerHops = {0.8, 0.65, 0.5, 0.4, 0.3};
+constexpr std::array kSmallerHopsLower = {0.0, 0.04, 0.08, 0.12};
+// Smallest rise from the stoop to the lift-off that is tried, as a share of the length of a leg.
+// Chosen: 5 mm for a leg of 0.25 m; below, the push is a jerk.
+constexpr double kLeastRise = 0.02;
 // A motion begins and ends at rest, with the COG above the ZMP. If the ZMP moves less than this
 // time after the beginning or before the end, the COG has too little time for it. The time
 // constant of the COG is sqrt(z/g), which is 0.16 s for HOAP-1. Derived: what is left of a movement
@@ -398,6 +406,84 @@ void shorter_flights(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
            for (auto flight = flights.rbegin(); flight != flights.rend(); ++flight)
              p = stretched(of.model, p, flight->begin, flight->end, flight->factor);
          }});
+  }
+}
+
+// Weak motors allow only a flight that is shorter, from legs that are bent more, after a push that
+// is as long as the new speed needs. One of these changes alone may help little. Tries all of them
+// together, the longest flight first.
+void smaller_hops(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
+  if (!of.model.has_soles()) return;
+  struct Flight {
+    double begin = 0, end = 0;
+    size_t before = 0, off = 0, land = 0, after = 0;  // keys: stoop, lift-off, landing, stoop
+  };
+  const std::vector<size_t> keys = height_keys(of);
+  std::vector<Flight> flights;
+  for (size_t i = 1; i < of.pattern.phases.size(); ++i) {
+    if (of.pattern.phases[i].support != Support::none) continue;
+    const std::optional<size_t> off = key_of_lift_off(of, keys, i);
+    if (!off || *off == 0 || *off + 2 >= keys.size()) return;
+    flights.push_back({of.begin_of(i), of.pattern.phases[i].until, keys[*off - 1], keys[*off],
+                       keys[*off + 1], keys[*off + 2]});
+    if (of.is_repeated_key(keys[*off - 1]) || of.is_repeated_key(keys[*off + 2])) return;
+  }
+  if (flights.empty()) return;
+  const double leg = leg_length(of.model);
+  const Flight& first = flights.front();
+  const double lasts = first.end - first.begin;
+  for (const double share : kSmallerHops) {
+    const double shorter = std::round(1e3 * share * lasts) / 1e3;
+    const double speed = kGravity * shorter / 2;
+    for (const double lower : kSmallerHopsLower) {
+      const double by = std::round(1e3 * lower * leg) / 1e3;
+      const auto rise_to = [&](size_t end, size_t low) {
+        return *of.pattern.keyframes[end].cog_height - by - *of.pattern.keyframes[low].cog_height;
+      };
+      const bool possible =
+          shorter > 0 && std::all_of(flights.begin(), flights.end(), [&](const Flight& f) {
+            return std::min(rise_to(f.off, f.before), rise_to(f.land, f.after)) > kLeastRise * leg;
+          });
+      if (!possible) continue;
+      // The longest push from the stoop, and the longest landing into it [s].
+      // The change outlives this loop, so it has its own copy of the speed.
+      const auto push = [speed](double rise) {
+        return std::round(1e3 * longest_push(rise, speed, 4 * rise / speed)) / 1e3;
+      };
+      const auto height = [&](size_t key) {
+        return text::brief(*of.pattern.keyframes[key].cog_height - by, 4);
+      };
+      const double begins = push(rise_to(first.off, first.before)),
+                   ends = push(rise_to(first.land, first.after));
+      made.push_back(
+          {Rank::pace,
+           {of.key_place(first.off),
+            (flights.size() == 1 ? "the flight lasts " : "the first flight lasts ") +
+                seconds(lasts) + ", in which the robot rises by " +
+                text::fixed(1e3 * kGravity * lasts * lasts / 8, 0) + " mm",
+            "with a smaller hop: a flight of " + seconds(shorter) + " (a rise of " +
+                text::fixed(1e3 * kGravity * shorter * shorter / 8, 1) + " mm), a COG height of " +
+                height(first.off) + " m at the lift-off and " + height(first.land) +
+                " m at the landing, and the stoops (" + of.key_place(first.before) + " and " +
+                of.key_place(first.after) + ") " + seconds(begins) + " before the lift-off and " +
+                seconds(ends) + " after the landing" +
+                (flights.size() > 1 ? ", and the same for the other flights," : "")},
+           [&of, flights, share, by, push](Pattern& p) {
+             for (auto f = flights.rbegin(); f != flights.rend(); ++f) {
+               const double length = f->end - f->begin;
+               const double now = std::round(1e3 * share * length) / 1e3;
+               p = stretched(of.model, p, f->begin, f->end, now / length);
+               for (const size_t key : {f->off, f->land}) *p.keyframes[key].cog_height -= by;
+               const auto rise = [&](size_t end, size_t low) {
+                 return *p.keyframes[end].cog_height - *p.keyframes[low].cog_height;
+               };
+               p.keyframes[f->before].t = f->begin - push(rise(f->off, f->before));
+               p.keyframes[f->after].t = f->begin + now + push(rise(f->land, f->after));
+             }
+           },
+           1 - share + by});
+      made.back().only_if_enough = true;
+    }
   }
 }
 

@@ -23,6 +23,8 @@ void rests(const ExaminedPattern& of, std::vector<Hypothesis>& made);
 void missing_flight_keys(const ExaminedPattern& of, std::vector<Hypothesis>& made);
 /// Shorter flights.
 void shorter_flights(const ExaminedPattern& of, std::vector<Hypothesis>& made);
+/// Shorter flights from legs that are bent more, with pushes and landings that fit.
+void smaller_hops(const ExaminedPattern& of, std::vector<Hypothesis>& made);
 /// Another COG height.
 void cog_height(const ExaminedPattern& of, std::vector<Hypothesis>& made);
 

@@ -28,6 +28,15 @@ export function removeValue(document, pointer) {
   }
 }
 
+/// What the author should know of a joint of a leg before it gets a key; "" for other joints, and if
+/// a leg joint already has a key.
+export function legWords(state, name) {
+  const isLeg = (joint) => state.joints.some((one) => one.name === joint && one.leg);
+  if (!isLeg(name) || state.tracks.some((track) => isLeg(track.joint))) return "";
+  return `${name} is a joint of a leg. As soon as one leg joint has a key, all leg joints follow only their keys, ` +
+    "and the legs are no longer solved from the feet and the COG.";
+}
+
 /// Whether a time can be dragged. A time in a block that repeats stands for several times, so only
 /// the author changes it in the text. The server can change an expression by adding a number.
 export const canDrag = (value, thing = {}) => ["number", "string"].includes(typeof value) && !thing.repeated;

@@ -2,7 +2,7 @@
 // cursor.
 
 import { byId, element, seconds } from "./dom.js";
-import { addSwing, appendPhase, countedFrom, goalOf, goals, joinKeyframe, keysWithin, putGoal, putKey, putPart, putSupport, putTarget, removeKey, removeValue, repeatPhases, roomOfKey, roundsOf, roundedTime, sameTime, setRounds, splitPhase, stillWanted, valueFromRow, written } from "./edits.js";
+import { addSwing, appendPhase, countedFrom, goalOf, goals, joinKeyframe, keysWithin, legWords, putGoal, putKey, putPart, putSupport, putTarget, removeKey, removeValue, repeatPhases, roomOfKey, roundsOf, roundedTime, sameTime, setRounds, splitPhase, stillWanted, valueFromRow, written } from "./edits.js";
 import { missingFields, optionalField, optionsOf, token, valueAt } from "./fields.js";
 import { addField, addFloorMotion, addQuantity, addToGround, addUncertainPush, axesOf, distributions, growField, putShape, quantities, removeItem, shapes } from "./parts.js";
 import { sampleAt } from "./series.js";
@@ -621,8 +621,10 @@ export class Inspector {
       : track === "cog height" ? putPart(state.keyframes, time, "cog", "height", value.height)
         : joint ? putPart(state.keyframes, time, "joints", track, value) : putKey(state.keyframes, time, track, value);
     if (!edits.length) return this.page.say(noRoom);
+    const legs = joint ? legWords(state, track) : "";
     if (await this.page.edit(edits)) this.selectNew(handle ? handle.gaze ? "/gaze" : "/hands" + token(handle.link)
       : track === "cog height" ? "/cog" : joint ? "/joints" + token(track) : "/" + track, time);
+    if (legs) this.page.say(legs);
   }
 
   /// Selects the key that has just been added, with the focus in its first value.

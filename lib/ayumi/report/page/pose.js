@@ -1,6 +1,7 @@
 // The posture at the time of the cursor: sliders of the joints, and places of feet, hands, trunk
 // and COG. The picture shows the requested posture, which is written into the pattern as a key.
 
+import { legWords } from "./edits.js";
 import { byId, element, fixed, seconds } from "./dom.js";
 
 const words = { x: "forward", y: "left", z: "up" };
@@ -126,7 +127,8 @@ export class Pose {
         const { status, value } = await this.page.server.ask("POST", "pose", { time: this.page.time, ...sent });
         if (!this.asked) break;
         this.answer = status === 200 ? value : null;
-        byId("pose-words").textContent = status === 200 ? value.message || "" : value.message || "The server cannot make this change. Please reload the page.";
+        const legs = Object.keys(sent.joints ?? {}).map((name) => legWords(this.page.state, name)).find(Boolean) ?? "";
+        byId("pose-words").textContent = status === 200 ? [value.message, legs].filter(Boolean).join(" ") : value.message || "The server cannot make this change. Please reload the page.";
         // The author looks at the picture during a drag, so the message about what is impossible is
         // shown there.
         if (sent.drag || sent.target) this.page.say(byId("pose-words").textContent);

@@ -12,9 +12,10 @@ const trackWords = { zmp: "ZMP", cog: "COG", fz: "Vertical force", torso: "Trunk
 /// The smallest round step that is at least as long as a pixel of the timeline [s].
 export const roundStep = (perPixel) => [0.001, 0.01, 0.1].find((step) => step >= perPixel) ?? 1;
 
-/// The reasons why a key cannot be moved.
-const repeatedTime = "This key is in a block that repeats, so its time stands for several times. Change it in the text.";
-const writtenTime = "The time of this key is not written as a number or an expression. Change it in the text.";
+/// The reason why a thing cannot be moved. `time` is what a drag would change: "the time of this key".
+const reasonAgainst = (time, repeated) => repeated
+  ? `This is in a block that repeats, so ${time} stands for several times. Change it in the text.`
+  : `Here ${time} is not written as a number or an expression. Change it in the text.`;
 
 /// The number of pixels from which on a movement is a drag and not a click.
 const leastDrag = 4;
@@ -98,13 +99,16 @@ export class Timeline {
         "aria-pressed": String(this.page.isSelected(thing)),
         onclick: () => this.page.select(thing, phase.from) },
       this.wide(phase.until - phase.from) > 7.5 * words.length ? element("span", {}, words) : null));
-      if (!this.page.can("edit") || !canDrag(phase.until_value, phase) || !this.visible(phase.until, phase.until)) return;
+      if (!this.page.can("edit") || !this.visible(phase.until, phase.until)) return;
+      const movable = canDrag(phase.until_value, phase), why = reasonAgainst("the end of this phase", phase.repeated);
       const grip = element("button", { type: "button", class: "grip", style: this.place(phase.until),
-        "data-id": phase.until_pointer, title: `End of phase ${i + 1}: drag, or Ctrl and arrow keys`,
+        "data-id": phase.until_pointer, title: `End of phase ${i + 1}: ${movable ? "drag, or Ctrl and arrow keys" : why}`,
         "aria-label": `End of phase ${i + 1} at ${seconds(phase.until)}`,
         onclick: () => this.page.select(thing, phase.until) });
-      this.movable(grip, { time: phase.until, room: roomOfPhase(state.phases, i), words: "phase",
-        edits: (t) => movePhase(this.page.state, i, t, byId("keys-along").checked) });
+      if (movable)
+        this.movable(grip, { time: phase.until, room: roomOfPhase(state.phases, i), words: "phase",
+          edits: (t) => movePhase(this.page.state, i, t, byId("keys-along").checked) });
+      else this.fixed(grip, why);
       parts.push(grip);
     });
     return this.lane("Phases", parts, "phases");
@@ -127,7 +131,7 @@ export class Timeline {
         this.movable(mark, { time: key.time, room: roomOfKey(this.page.state.keyframes, key.pointer),
           words: "key", edits: (t) => moveKey(key, t),
           together: `[data-time="${key.time_pointer}"]` });
-      else if (this.page.can("edit")) this.fixed(mark, key.repeated ? repeatedTime : writtenTime);
+      else if (this.page.can("edit")) this.fixed(mark, reasonAgainst("the time of this key", key.repeated));
       if (this.page.can("edit"))
         mark.addEventListener("keydown", (event) => {
           if (event.key !== "Delete") return;
