@@ -86,6 +86,30 @@ const RowKind kStepRows = {.name = "table_step", .order = {3, 4}};
 const RowKind kTargetRows = {
     .name = "table_position", .unit = &RowPrices::angle, .beyond_check = true, .order = {3, 5}};
 
+// Largest share of a step by which the row of its rate is made stricter. Chosen: kinks of usual
+// motions give less than 0.01; a jump is repaired by its own rows. Test:
+// FromScratch.JumpsOfATallRobotNeedFewPrograms.
+constexpr double kMostBeyond = 0.05;
+
+// The row of a step has the rate of the target at one sample, but the table has differences of two
+// samples, which are larger at a peak with a kink. The latest motion shows by how much, as a rate.
+double step_beyond_rate(const RowSite& site, int point, int dof, double lead) {
+  const CommandSeries& motion = site.seen.empty() ? site.series : *site.seen.back();
+  const auto count = static_cast<int>(motion.samples.size());
+  const int k = site.points[static_cast<size_t>(point)].sample;
+  const auto target = [&](int i) {
+    const RobotState& state = motion.samples[static_cast<size_t>(i)].state;
+    return state.theta[dof] + lead * state.dtheta[dof];
+  };
+  const CommandSample& here = motion.samples[static_cast<size_t>(k)];
+  double largest = 0;
+  for (const int i : {k, k + 1})
+    if (i > 0 && i < count)
+      largest = std::max(largest, std::abs(target(i) - target(i - 1)) / motion.dt);
+  const double rate = std::abs(here.state.dtheta[dof] + lead * here.acceleration[6 + dof]);
+  return std::max(0.0, largest - rate);
+}
+
 void place_step_rows(RowSite& site, int dof, double lead, double largest) {
   const RowSettings& settings = site.settings;
   for (int point = 0; point < site.count(); ++point) {
@@ -93,8 +117,10 @@ void place_step_rows(RowSite& site, int dof, double lead, double largest) {
       return std::abs(s.state.dtheta[dof] + lead * s.acceleration[6 + dof]) / largest;
     });
     if (used <= settings.watched_share) continue;
+    const double beyond = step_beyond_rate(site, point, dof, lead) / largest;
+    const double most = settings.limit_share - std::min(beyond, kMostBeyond);
     site.add(kStepRows, point, dof, JointRow{JointQuantity::speed, dof, 1 / largest, lead}, 1,
-             -settings.limit_share, settings.limit_share)
+             -most, most)
         .active = settings.active;
   }
 }

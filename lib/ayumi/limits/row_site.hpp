@@ -98,6 +98,8 @@ struct RowSettings {
     /// Share of the check's tolerance by which the motion may deviate in this time.
     double soft_share = 0;
     double soft_upwards = 0;  ///< share of the band upwards in this time
+    /// Share of the height at which a swing may continue that a sole may have at a contact's edge.
+    double edge_share = 0;
   } stance;
   struct {
     /// Time before landing and after lift-off in which a sole should be near its place [s].

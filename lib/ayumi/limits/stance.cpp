@@ -178,6 +178,26 @@ const RowKind kStanceRows = {.name = "stance",
                              .beyond_check = true,
                              .order = {2, 0}};
 
+const RowKind kEdgeRows = {.name = "contact_edge",
+                           .unit = &RowPrices::length,
+                           .relaxed = &RowPrices::foot,
+                           .order = {2, 6}};
+
+// Where a contact begins or ends beside a swing, the middle of the sole is not higher than a swing
+// may continue. The pose of the sole alone does not ensure this, because a sole may also turn.
+void place_edge_row(RowSite& site, int point, Side side) {
+  const CollocationPoint& at = site.points[point];
+  const ContactInterval& contact = site.plan.at(side, at.sample);
+  const int last = static_cast<int>(site.series.samples.size()) - 1;
+  const bool lands = at.sample == contact.first && contact.first > 0;
+  const bool lifts = at.sample == contact.last && contact.last < last;
+  if (!lands && !lifts) return;
+  const double most = kRunOnShare * site.tolerance(FindingKind::foot_float);
+  site.add(kEdgeRows, point, static_cast<int>(side),
+           height_rows(side, {site.model.sole(side).center}, at.ground[static_cast<int>(side)]), 1,
+           -kUnbounded, site.settings.stance.edge_share * most);
+}
+
 // The pose of a supporting sole stays in a band about its place that is much narrower than the
 // check's tolerances. Rows of slip, depth and height would have kinks at the corners.
 void place_stance_rows(RowSite& site) {
@@ -195,6 +215,7 @@ void place_stance_rows(RowSite& site) {
       Vector6d lower = -upper;
       soften_landing(site, i, side, lower, upper);
       site.add(kStanceRows, i, foot, deviation_rows(side, at.ground[foot]), lower, upper);
+      place_edge_row(site, i, side);
     }
   }
 }

@@ -99,6 +99,17 @@ std::vector<TimeWindow> windows_around(const std::vector<Finding>& findings, dou
   return merged(std::move(windows));
 }
 
+void add_error_times(const ConsistencyReport& report, double dt, std::vector<double>& times) {
+  for (const Finding& f : report.findings) {
+    if (f.severity != Severity::error) continue;
+    const double length = f.end - f.begin;
+    const int steps = std::clamp(static_cast<int>(std::lround(length / dt)), 1,
+                                 policy::collocation::kMostPerError);
+    for (int i = 0; i <= steps; ++i) times.push_back(f.begin + length * i / steps);
+    times.push_back(f.at);
+  }
+}
+
 CorrectionTrack trimmed(const CorrectionTrack& track) {
   const Eigen::MatrixXd c =
       (track.coefficients * policy::report::kWritten).array().round() / policy::report::kWritten;

@@ -23,6 +23,9 @@ std::vector<TimeWindow> windows_around(const std::vector<Finding>& findings, dou
 /// Windows in which the commanded COG or ZMP itself is at fault, and not only because of a posture.
 std::vector<TimeWindow> wrong_plan(const ConsistencyReport& report);
 
+/// Adds times within the windows of all errors, which are then collocation points.
+void add_error_times(const ConsistencyReport& report, double dt, std::vector<double>& times);
+
 /// The track in the form of a file: numbers with nine decimals, and only the control points and
 /// joints that move, with the three zero points on both sides that a cubic spline needs to begin at
 /// rest.

@@ -122,14 +122,25 @@ VectorXd kept_multipliers(const RepairState& state) {
 // of the last program.
 struct Start {
   bool warm = false, known = false;
+  double violation = 0;
 };
 
 Start start_of(const RepairState& state, const Nlp& hard) {
   if (state.spec.initial.size() == 0) return {};
   const bool known = !state.multipliers.empty();
   const double near = known ? policy::rounds::kNearKnown : policy::rounds::kNearlyMet;
-  const bool warm = violation_at_start(hard) < near;
-  return {warm, warm && known};
+  const double violation = violation_at_start(hard);
+  const bool warm = violation < near;
+  return {warm, warm && known, violation};
+}
+
+// A violation can only be removed by moving as far. Slacks that are much smaller would cut all
+// steps short, so a warm start keeps a distance from its bounds that fits its violation.
+void make_room(NlpOptions& options, double violation) {
+  using namespace policy::solver;
+  options.start_push = std::clamp(kPushShare * violation, options.start_push, kStartPush);
+  options.start_barrier =
+      std::clamp(kBarrierShare * violation, options.start_barrier, kStartBarrier);
 }
 
 // Solves the program from hard.start, with its soft goals relaxed, and keeps its multipliers.
@@ -141,6 +152,7 @@ NlpSolution solve_relaxing_goals(RepairState& state, Nlp& hard, const std::strin
     options.start_barrier = state.barrier;
     hard.start_multipliers = kept_multipliers(state);
   }
+  if (start.warm) make_room(options, start.violation);
   options.most_work = work_left(state, policy::rounds::kWorkForReasons);
   if (!state.flight) options.tolerance = tolerance;
   options.stops_at_a_kink = tolerance >= policy::rounds::kTolerance;

@@ -44,7 +44,8 @@ RowSettings row_settings(const CorrectionSpec& spec) {
               .corner_share = policy::stance::kCornerShare,
               .soft_time = policy::stance::kSoftTime,
               .soft_share = policy::stance::kSoftShare,
-              .soft_upwards = policy::stance::kSoftUpwards};
+              .soft_upwards = policy::stance::kSoftUpwards,
+              .edge_share = policy::stance::kEdgeShare};
   s.swing = {.near_place = policy::swing::kNearPlace,
              .place_slack = policy::swing::kPlaceSlack,
              .least_landing_height = policy::swing::kLeastLandingHeight,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ayumi/motion/differentiate.hpp"
+#include "ayumi/repair/repair_setup.hpp"
 
 namespace ayumi {
 
@@ -30,17 +31,6 @@ CorrectionSpec at_check_limits(const CorrectionSpec& spec, const CorrectionSpec&
   limits.swing_goals = false;
   limits.zmp_margin = limits.safe_margin = policy::tighten::kZmpMargin;
   return limits;
-}
-
-void add_error_times(const ConsistencyReport& report, double dt, std::vector<double>& times) {
-  for (const Finding& f : report.findings) {
-    if (f.severity != Severity::error) continue;
-    const double length = f.end - f.begin;
-    const int steps = std::clamp(static_cast<int>(std::lround(length / dt)), 1,
-                                 policy::collocation::kMostPerError);
-    for (int i = 0; i <= steps; ++i) times.push_back(f.begin + length * i / steps);
-    times.push_back(f.at);
-  }
 }
 
 CorrectionTrack between(const CorrectionTrack& a, const CorrectionTrack& b, double share) {

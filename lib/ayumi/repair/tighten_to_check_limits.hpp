@@ -15,9 +15,6 @@ namespace ayumi {
 CorrectionSpec at_check_limits(const CorrectionSpec& spec, const CorrectionSpec& asked,
                                double robustness);
 
-/// Adds the times of all errors as collocation points.
-void add_error_times(const ConsistencyReport& report, double dt, std::vector<double>& times);
-
 /// Computes a + share (b - a); both have the same knots.
 CorrectionTrack between(const CorrectionTrack& a, const CorrectionTrack& b, double share);
 
