@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/cli/program.hpp"
+#include "tests/support/resealed.hpp"
 
 namespace ayumi::test {
 namespace {
@@ -55,14 +56,14 @@ TEST(PushCommand, GoesOnFromItsResultsForAnyNumberOfThreads) {
   }
   partly["cases"].erase(0);
   partly["cases"][0]["open_loop"]["runs"] = 1234;  // this result is kept and not computed again
-  write(study.folder / "results.json", partly.dump());
+  write(study.folder / "results.json", resealed(partly));
   std::vector<std::string> again = study.command;
   again.back() = "2";
   ASSERT_EQ(study.run(again).exit_code, 0);
   Json joined = Json::parse(contents(study.folder / "results.json"));
   EXPECT_EQ(joined["cases"][1]["open_loop"]["runs"], 1234);
   joined["cases"][1]["open_loop"]["runs"] = Json::parse(whole)["cases"][1]["open_loop"]["runs"];
-  EXPECT_EQ(joined, Json::parse(whole));
+  EXPECT_EQ(resealed(joined), resealed(Json::parse(whole)));
 
   const Output other = study.run(study.command, {"--gain", "ka=1"});
   EXPECT_EQ(other.exit_code, 3);
@@ -78,12 +79,34 @@ TEST(PushCommand, GoesOnFromItsResultsForAnyNumberOfThreads) {
         std::pair("/cases/0/limits/0/impulse_Ns", 1e308)}) {
     Json edited = Json::parse(whole);
     edited[Json::json_pointer(place)] = value;
-    write(study.folder / "results.json", edited.dump());
+    write(study.folder / "results.json", resealed(edited));
     const Output refused = study.run(study.command);
     EXPECT_EQ(refused.exit_code, 3) << place << refused.out;
     EXPECT_NE(refused.err.find("this file has a push with numbers that no push has"),
               std::string::npos)
         << place << refused.err;
+  }
+}
+
+// An edited limit would be believed when the study is continued.
+TEST(PushCommand, RefusesResultsThatWereEdited) {
+  const Study study;
+  ASSERT_EQ(study.run(study.command).exit_code, 0);
+  const std::string whole = contents(study.folder / "results.json");
+  EXPECT_TRUE(is_sealed(whole));
+  Json older = Json::parse(whole);
+  older.erase(kSealKey);
+  std::string edited = whole;
+  edited.replace(edited.find("\"capped\": false"), 15, "\"capped\": true ");
+  for (const auto& [text, why] :
+       {std::pair(edited, "the file has changed since Ayumi wrote it"),
+        std::pair(older.dump(1), "older version of Ayumi wrote it, or it was changed")}) {
+    write(study.folder / "results.json", text);
+    const Output refused = study.run(study.command);
+    EXPECT_EQ(refused.exit_code, 3) << refused.out;
+    EXPECT_NE(refused.err.find(why), std::string::npos) << refused.err;
+    EXPECT_NE(refused.err.find("replace the file with --force"), std::string::npos) << refused.err;
+    EXPECT_EQ(contents(study.folder / "results.json"), text);
   }
 }
 
