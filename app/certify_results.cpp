@@ -7,6 +7,7 @@
 #include "ayumi/base/largest_number.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/json/json_depth.hpp"
+#include "ayumi/io/run/seal.hpp"
 
 namespace ayumi::app {
 
@@ -56,7 +57,7 @@ std::string case_results_text(const Json& study, const std::string& shard, const
     text += separator + row.dump();
     separator = ",\n";
   }
-  return text + "\n ]\n}\n";
+  return sealed(text + "\n ]\n}");
 }
 
 std::string add_case_results(const std::filesystem::path& file, const Json& study, bool must_exist,
@@ -75,6 +76,7 @@ std::string add_case_results(const std::filesystem::path& file, const Json& stud
     const auto json = shallow_json<nlohmann::json>(bytes);
     if (json.at("format") != kCertifyFormat)
       refuse("this file does not hold results of ayumi certify");
+    if (const std::string wrong = wrong_seal(bytes); !wrong.empty()) refuse(wrong + "; " + remedy);
     // The order of the keys does not matter.
     const auto& theirs = json.at("study");
     const auto ours = nlohmann::json::parse(study.dump());

@@ -21,12 +21,12 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
 #include "ayumi/io/bundled_data.hpp"
+#include "ayumi/render/shader_cache.hpp"
 #include "describe.hpp"
 #include "help.hpp"
 #include "libraries.hpp"
 #include "names.hpp"
 #include "option_checks.hpp"
-#include "shader_cache.hpp"
 #include "signals.hpp"
 #include "terminal.hpp"
 
@@ -381,7 +381,7 @@ int parse_and_run(int argc, char** argv) {
 int run(int argc, char** argv) {
   fill_closed_streams();
   watch_for_signals();
-  spare_full_disk_of_shaders();
+  disable_shader_cache_on_full_disk();  // before the first thread
   // Libraries also allocate memory while they clean up after an error, where no exception may be
   // thrown.
   std::set_terminate([] {

@@ -6,6 +6,7 @@
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/largest_number.hpp"
 #include "ayumi/io/json/json_depth.hpp"
+#include "ayumi/io/run/seal.hpp"
 
 namespace ayumi::app {
 
@@ -136,7 +137,7 @@ std::string results_text(const Json& study, const KnownCases& cases) {
     list.push_back(entry);
   }
   const Json file = {{"format", kPushFormat}, {"study", study}, {"cases", list}};
-  return file.dump(1) + "\n";
+  return sealed(file.dump(1));
 }
 
 KnownCases read_results(const std::filesystem::path& file, const Json& study, size_t count) {
@@ -150,6 +151,7 @@ KnownCases read_results(const std::filesystem::path& file, const Json& study, si
   try {
     const auto json = shallow_json<nlohmann::json>(bytes);
     if (json.at("format") != kPushFormat) refuse("this file does not hold results of ayumi push");
+    if (const std::string wrong = wrong_seal(bytes); !wrong.empty()) refuse(wrong);
     // The order of the keys does not matter.
     if (json.at("study") != nlohmann::json::parse(study.dump()))
       refuse("this file holds the results of a study with other settings");

@@ -5,6 +5,8 @@
 #include <csignal>
 #include <ctime>
 
+#include "ayumi/base/unfinished_files.hpp"
+
 namespace ayumi::app {
 
 namespace {
@@ -20,10 +22,17 @@ bool has_timer = false;
 volatile std::sig_atomic_t is_stop_expected = 0;
 
 void on_signal(int signal) {
-  stop_signal = 1;
   // The shell and the system both send SIGHUP when a terminal is closed, so the second one is no
-  // wish to end at once.
-  std::signal(signal, signal == SIGHUP ? SIG_IGN : SIG_DFL);
+  // wish to end at once. The second one of the others is.
+  const bool is_second = stop_signal == signal && signal != SIGHUP;
+  stop_signal = signal;
+  if (signal == SIGHUP) std::signal(signal, SIG_IGN);
+  if (is_second) {
+    remove_unfinished();
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);  // it ends the process when this function returns
+    return;
+  }
   const itimerspec once = {{0, 0}, {0, kPatience}};
   if (has_timer) timer_settime(impatience, 0, &once, nullptr);
 }
@@ -31,6 +40,7 @@ void on_signal(int signal) {
 // Runs if the work has not stopped in time after Ctrl-C. No result is lost: a file is renamed to
 // its final name only when it is complete, and child processes end with this process.
 void on_impatience(int) {
+  remove_unfinished();
   if (is_stop_expected) _exit(0);
   constexpr char kMessage[] = "ayumi: stopped\n";
   static_cast<void>(!write(STDERR_FILENO, kMessage, sizeof kMessage - 1));

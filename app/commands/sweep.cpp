@@ -173,6 +173,7 @@ void run_sweep(Context& context, const SweepCommand& options) {
   }
   const auto results = std::make_unique<ResultsDatabase>(options.out, ResultsDatabase::Mode::write);
   results->require_study(head);
+  results->require_unchanged();
   // A wrong expectation is refused before the work.
   judge_expectations(*results, options.outputs.expect);
   if (!shard.whole()) results->add_shards({shard.word()});
@@ -233,6 +234,7 @@ void merge_results(Context& context, const MergeCommand& options) {
   for (const std::string& file : options.files) {
     files.push_back(std::make_unique<ResultsDatabase>(file, ResultsDatabase::Mode::read));
     files.back()->require_study(files.front()->head());
+    files.back()->require_unchanged();
   }
   if (!options.partial) refuse_missing(files, files.front()->head().cases);
   const SweepHead head = files.front()->head();
@@ -277,6 +279,7 @@ std::string slurm_words(const SlurmStatus& slurm) {
 
 void show_status(Context& context, const std::string& file) {
   const ResultsDatabase results(file, ResultsDatabase::Mode::read);
+  results.require_unchanged();
   const SweepCounts counts = results.counts();
   const std::vector<std::string> shards = results.shards();
   const SlurmStatus slurm = slurm_status(file);

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
@@ -26,9 +27,11 @@ namespace {
 
 /// Mark in the head of the file, "AYUM", by which other programs recognize it. Definition.
 constexpr int kApplication = 0x4159554d;
-/// Version of the tables and views. Definition: every change of their SQL requires another number,
-/// because a file with other tables or views is refused.
-constexpr int kDatabaseFormat = 1;
+/// Version of the tables, the views and the seal. Definition: every change of their SQL requires
+/// another number, because a file with other tables or views is refused. Version 1 had no seal.
+constexpr int kDatabaseFormat = 2;
+/// Key of the seal of the rows in the table "about". Definition.
+constexpr const char* kSealRow = "rows_sha256";
 /// Longest text or row in a file [bytes]. Definition: a study file of 64 MiB, and room for the
 /// rest.
 constexpr int kLongestText = 65 << 20;
@@ -87,6 +90,32 @@ class Statement {
     return text(column);
   }
   int columns() const { return sqlite3_column_count(statement_); }
+  /// The cells of the row as the seal counts them: the kind of each cell and its value.
+  std::string row_bytes() const {
+    std::string bytes;
+    for (int i = 0; i < columns(); ++i) {
+      switch (sqlite3_column_type(statement_, i)) {
+        case SQLITE_NULL:
+          bytes += 'n';
+          break;
+        case SQLITE_INTEGER:
+          bytes += 'i' + std::to_string(integer(i)) + ';';
+          break;
+        case SQLITE_FLOAT: {
+          std::array<char, sizeof(double)> number;
+          const double value = sqlite3_column_double(statement_, i);
+          std::memcpy(number.data(), &value, sizeof value);
+          bytes += 'd' + std::string(number.data(), number.size());
+          break;
+        }
+        default: {
+          const std::string word = text(i);
+          bytes += 't' + std::to_string(word.size()) + ';' + word;
+        }
+      }
+    }
+    return bytes;
+  }
 
  private:
   sqlite3_stmt* statement_ = nullptr;
@@ -292,7 +321,8 @@ void ResultsDatabase::make_tables() {
                                                        {"version", head_.version},
                                                        {"seed", head_.seed},
                                                        {"cases", std::to_string(head_.cases)},
-                                                       {"fingerprint", head_.fingerprint()}};
+                                                       {"fingerprint", head_.fingerprint()},
+                                                       {kSealRow, seal_without_rows().digits()}};
   for (const auto& [key, value] : about)
     sql += "INSERT INTO about VALUES (" + sql_text(key) + ", " + sql_text(value) + ");";
   for (size_t i = 0; i < head_.inputs.size(); ++i)
@@ -359,7 +389,8 @@ void ResultsDatabase::read_head() {
     fail(ErrorCode::bad_file, {file_.string()},
          "the results have version " + std::to_string(format) +
              " of the format, but this program has " + std::to_string(kDatabaseFormat) +
-             "; use the version of Ayumi that wrote the results");
+             "; use the version of Ayumi that wrote the results, or run the study again with "
+             "--force");
   require_made_by(kHeadTables);
   const auto rows = [&](const std::string& sql, const auto& take) {
     Statement statement(database_, sql);
@@ -424,6 +455,49 @@ void ResultsDatabase::require_study(const SweepHead& asked, const std::string& r
          "this file holds the results of another study (" + differs + "); " + remedy);
 }
 
+RowSeal ResultsDatabase::seal_without_rows() const { return RowSeal(head_.fingerprint()); }
+
+RowSeal ResultsDatabase::recorded_seal() const {
+  Statement statement(database_, "SELECT value FROM main.about WHERE key = " + sql_text(kSealRow));
+  if (!statement.good()) complain("the file cannot be read");
+  std::optional<RowSeal> seal;
+  if (statement.step()) seal = RowSeal::of_digits(statement.text(0));
+  if (!seal) fail(ErrorCode::bad_file, {file_.string()}, kNoResults);
+  return *seal;
+}
+
+void ResultsDatabase::record_seal(const RowSeal& seal) {
+  execute("UPDATE main.about SET value = " + sql_text(seal.digits()) +
+          " WHERE key = " + sql_text(kSealRow));
+}
+
+void ResultsDatabase::change_seal(RowSeal& seal, const std::string& sql, bool add) const {
+  Statement statement(database_, sql);
+  if (!statement.good()) complain("the file cannot be read");
+  while (statement.step()) {
+    const std::string row = statement.row_bytes();
+    add ? seal.add(row) : seal.remove(row);
+  }
+  if (!statement.done()) complain("the file cannot be read");
+}
+
+void ResultsDatabase::require_unchanged() const {
+  // One transaction, because another program may be writing.
+  execute("BEGIN");
+  struct End {
+    sqlite3* database;
+    ~End() { sqlite3_exec(database, "COMMIT", nullptr, nullptr, nullptr); }
+  } end{database_};
+  RowSeal found = seal_without_rows();
+  change_seal(found, "SELECT " + list_of(all_columns(head_)) + " FROM cases", true);
+  if (!(found == recorded_seal()))
+    fail(ErrorCode::bad_file, {file_.string()},
+         "the results have changed since ayumi sweep wrote them (their SHA-256 differs from "
+         "\"rows_sha256\" of the table 'about'); run the study again with --force, or choose "
+         "another "
+         "name");
+}
+
 std::vector<std::string> ResultsDatabase::shards() const {
   std::vector<std::string> list;
   for (const auto& row : query("SELECT shard FROM shards ORDER BY shard")) list.push_back(row[0]);
@@ -483,14 +557,19 @@ long ResultsDatabase::forget_errors(const std::vector<bool>& cases) {
       numbers.push_back(number);
   }
   execute("BEGIN IMMEDIATE");
+  RowSeal seal = recorded_seal();
+  const std::string row_of =
+      "SELECT " + list_of(all_columns(head_)) + " FROM cases WHERE \"case\" = ";
   Statement remove(database_, "DELETE FROM cases WHERE \"case\" = ?");
   if (!remove.good()) complain("the results cannot be written");
   for (const long number : numbers) {
+    change_seal(seal, row_of + std::to_string(number), false);
     remove.bind(1, number);
     remove.step();
     if (!remove.done()) complain("the results cannot be written");
     remove.reset();
   }
+  record_seal(seal);
   execute("COMMIT");
   return static_cast<long>(numbers.size());
 }
@@ -501,8 +580,12 @@ void ResultsDatabase::add(const std::vector<CaseRow>& rows) {
   std::string places = "?";
   for (size_t i = 1; i < count; ++i) places += ",?";
   execute("BEGIN IMMEDIATE");
+  RowSeal seal = recorded_seal();
+  const std::string row_of =
+      "SELECT " + list_of(all_columns(head_)) + " FROM cases WHERE \"case\" = ?";
   Statement insert(database_, "INSERT INTO cases VALUES (" + places + ")");
-  if (!insert.good()) complain("the results cannot be written");
+  Statement inserted(database_, row_of);
+  if (!insert.good() || !inserted.good()) complain("the results cannot be written");
   for (const CaseRow& row : rows) {
     int place = 1;
     insert.bind(place++, row.number);
@@ -512,7 +595,13 @@ void ResultsDatabase::add(const std::vector<CaseRow>& rows) {
     insert.step();
     if (!insert.done()) complain("the results cannot be written");
     insert.reset();
+    // SQLite may have converted a value to the type of its column, so the row is read again.
+    inserted.bind(1, row.number);
+    if (!inserted.step()) complain("the results cannot be written");
+    seal.add(inserted.row_bytes());
+    inserted.reset();
   }
+  record_seal(seal);
   execute("COMMIT");
 }
 
@@ -553,14 +642,23 @@ long ResultsDatabase::merge(const fs::path& other) {
              " was merged");
   if (!different.done()) complain("the files cannot be compared");
   different.reset();
-  execute(
-      "DELETE FROM main.cases WHERE error IS NOT NULL AND \"case\" IN (SELECT \"case\" FROM "
-      "theirs.cases WHERE error IS NULL)");
+  const std::string replaced_rows =
+      " FROM main.cases WHERE error IS NOT NULL AND \"case\" IN (SELECT \"case\" FROM theirs.cases "
+      "WHERE error IS NULL)";
+  RowSeal seal = recorded_seal();
+  change_seal(seal, "SELECT " + list_of(names) + replaced_rows, false);
+  execute("DELETE" + replaced_rows);
   const long replaced = sqlite3_changes(database_);
+  change_seal(seal,
+              "SELECT " + list_of(names, "b.") +
+                  " FROM theirs.cases b WHERE NOT EXISTS (SELECT 1 FROM main.cases a WHERE "
+                  "a.\"case\" = b.\"case\")",
+              true);
   execute("INSERT OR IGNORE INTO main.cases (" + list_of(names) + ") SELECT " + list_of(names) +
           " FROM theirs.cases");
   const long added = sqlite3_changes(database_) - replaced;
   execute("INSERT OR IGNORE INTO main.shards SELECT shard FROM theirs.shards");
+  record_seal(seal);
   execute("COMMIT");
   return added;
 }

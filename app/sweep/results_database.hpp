@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "sweep/case_runner.hpp"
+#include "sweep/row_seal.hpp"
 
 struct sqlite3;
 struct sqlite3_stmt;
@@ -68,6 +69,9 @@ class ResultsDatabase {
       const SweepHead& head,
       const std::string& remedy = "choose another name, or give --force to begin again") const;
 
+  /// Throws Error(bad_file) if a row was changed, added or removed by anything but this class.
+  void require_unchanged() const;
+
   /// The shards whose results are in this file, such as "1/4"; empty if the whole study was run.
   std::vector<std::string> shards() const;
   void add_shards(const std::vector<std::string>& shards);
@@ -88,7 +92,8 @@ class ResultsDatabase {
   void add(const std::vector<CaseRow>& rows);
   /// Adds the rows of another file of the same study. A case that both have must be the same to the
   /// last bit; a result replaces an error. Returns the number of added rows. Throws
-  /// Error(bad_file), and then this file is unchanged.
+  /// Error(bad_file), and then this file is unchanged. Does not test whether the rows of the other
+  /// file have changed: require_unchanged() does.
   long merge(const std::filesystem::path& other);
 
   /// All rows by number, as a table with one head row. `take` receives one line after the other.
@@ -106,6 +111,12 @@ class ResultsDatabase {
   void execute(const std::string& sql) const;
   [[noreturn]] void complain(const std::string& doing) const;
   void read_head();
+  /// The seal that the file records, and what it must be without any row.
+  RowSeal recorded_seal() const;
+  RowSeal seal_without_rows() const;
+  void record_seal(const RowSeal& seal);
+  /// Adds the rows of a query over all columns to a seal, or takes them away.
+  void change_seal(RowSeal& seal, const std::string& sql, bool add) const;
   void make_tables();
   /// Throws Error(bad_file), naming it, where a table or view differs from that of this SQL.
   void require_made_by(const std::string& sql) const;

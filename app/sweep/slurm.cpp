@@ -535,6 +535,7 @@ class Engine {
       try {
         rows = std::make_unique<ResultsDatabase>(part, ResultsDatabase::Mode::read);
         rows->require_study(results_.head());
+        rows->require_unchanged();
       } catch (const Error& error) {
         rows.reset();
         why_lost_ = one_line(error.what());

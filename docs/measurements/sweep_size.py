@@ -5,10 +5,12 @@ sweep_size.py AYUMI CASES FOLDER: runs 40 cases of a study that has CASES cases,
 the other cases to the results, and prints what each command takes. It measures figures of
 docs/slurm.md."""
 
+import hashlib
 import json
 import os
 import random
 import sqlite3
+import struct
 import subprocess
 import sys
 import time
@@ -34,6 +36,21 @@ def rows_like(rows, count):
             yield row
 
 
+def hash_of(row):
+    """The SHA-256 of a row as docs/formats.md defines it, as a number."""
+    cells = b""
+    for cell in row:
+        if cell is None:
+            cells += b"n"
+        elif isinstance(cell, int):
+            cells += b"i%d;" % cell
+        elif isinstance(cell, float):
+            cells += b"d" + struct.pack("<d", cell)
+        else:
+            cells += b"t%d;" % len(cell.encode()) + cell.encode()
+    return int.from_bytes(hashlib.sha256(cells).digest(), "big")
+
+
 def main():
     ayumi, count, folder = os.path.abspath(sys.argv[1]), int(sys.argv[2]), sys.argv[3]
     os.makedirs(folder)
@@ -54,8 +71,18 @@ def main():
     database = sqlite3.connect(os.path.join(folder, "r.db"))
     rows = database.execute("SELECT * FROM cases").fetchall()
     begin = time.process_time()
+    (seal,), = database.execute("SELECT value FROM about WHERE key = 'rows_sha256'")
+    total = int(seal, 16)
+
+    def sealed_rows():
+        nonlocal total
+        for row in rows_like(rows, count):
+            total += hash_of(row)
+            yield row
+
     database.executemany("INSERT INTO cases VALUES (%s)" % ",".join("?" * len(rows[0])),
-                         rows_like(rows, count))
+                         sealed_rows())
+    database.execute("UPDATE about SET value = ? WHERE key = 'rows_sha256'", ("%064x" % (total % 2 ** 256),))
     database.commit()
     database.execute("PRAGMA wal_checkpoint(TRUNCATE)")
     database.close()

@@ -5,6 +5,7 @@
 
 #include "tests/cli/program.hpp"
 #include "tests/support/json.hpp"
+#include "tests/support/resealed.hpp"
 
 namespace ayumi::test {
 namespace {
@@ -82,12 +83,12 @@ TEST(CertifyCommand, GoesOnAndRefusesOtherStudies) {
   Json partly = json_of(whole);
   for (int i = 0; i < 20; ++i) partly["cases"].erase(3);
   partly["cases"][0][4] = 0.125;  // this result is kept and not simulated again
-  write(study.folder / "cases.json", partly.dump());
+  write(study.folder / "cases.json", resealed(partly));
   ASSERT_EQ(study.certify({"-o", "cases.json"}).exit_code, 1);
   Json again = json_of(contents(study.folder / "cases.json"));
   EXPECT_EQ(again["cases"][0][4], 0.125);
   again["cases"][0][4] = json_of(whole)["cases"][0][4];
-  EXPECT_EQ(again, json_of(whole));
+  EXPECT_EQ(resealed(again), resealed(json_of(whole)));
   const Output other = study.certify({"-o", "cases.json", "--seed", "2"});
   EXPECT_EQ(other.exit_code, 3);
   EXPECT_NE(other.err.find("the results of another study ('seed' differs)"), std::string::npos)
@@ -102,11 +103,36 @@ TEST(CertifyCommand, RefusesFiguresThatNoSimulationGives) {
         std::tuple(0, Json(1e308), "a case has no number")}) {
     Json edited = json_of(CertifyStudy::whole());
     edited["cases"][0][place] = value;
-    write(study.folder / "cases.json", edited.dump());
+    write(study.folder / "cases.json", resealed(edited));
     const Output refused = study.certify({"-o", "cases.json"});
     EXPECT_EQ(refused.exit_code, 3) << why;
     EXPECT_NE(refused.err.find(why), std::string::npos) << refused.err;
   }
+}
+
+// An edited outcome would be believed when the study is continued or merged.
+TEST(CertifyCommand, RefusesResultsThatWereEdited) {
+  const CertifyStudy study;
+  const std::string& whole = CertifyStudy::whole();
+  EXPECT_TRUE(is_sealed(whole));
+  Json older = json_of(whole);
+  older.erase(kSealKey);
+  std::string edited = whole;
+  ASSERT_NE(edited.find("\"fell\""), std::string::npos);
+  edited.replace(edited.find("\"fell\""), 6, "\"stands\"");
+  for (const auto& [text, why] :
+       {std::pair(edited, "the file has changed since Ayumi wrote it"),
+        std::pair(older.dump(1), "older version of Ayumi wrote it, or it was changed")})
+    for (const auto& [option, remedy] :
+         {std::pair("-o", "replace the file with --force"),
+          std::pair("--merge", "run the shard of this file again")}) {
+      write(study.folder / "cases.json", text);
+      const Output refused = study.certify({option, "cases.json"});
+      EXPECT_EQ(refused.exit_code, 3) << refused.out;
+      EXPECT_NE(refused.err.find(why), std::string::npos) << refused.err;
+      EXPECT_NE(refused.err.find(remedy), std::string::npos) << refused.err;
+      EXPECT_EQ(contents(study.folder / "cases.json"), text);
+    }
 }
 
 // In an earlier version, one case with the largest number took 4.7 GB.
@@ -116,14 +142,15 @@ TEST(CertifyCommand, ACaseWithALargeNumberTakesNoMemory) {
   Json last = edited["cases"][0];
   last[0] = 99'999'999;
   edited["cases"].push_back(last);
-  write(study.folder / "cases.json", edited.dump());
+  write(study.folder / "cases.json", resealed(edited));
   struct rusage before {
   }, after{};
   ::getrusage(RUSAGE_CHILDREN, &before);
   ASSERT_EQ(study.certify({"-o", "cases.json"}).exit_code, 1);
   ::getrusage(RUSAGE_CHILDREN, &after);
   EXPECT_LE(after.ru_maxrss, std::max(before.ru_maxrss, 1'000'000L)) << "kB";
-  EXPECT_EQ(json_of(contents(study.folder / "cases.json")), edited) << "the case stays";
+  EXPECT_EQ(resealed(json_of(contents(study.folder / "cases.json"))), resealed(edited))
+      << "the case stays";
 }
 
 // In an earlier version, the comparison with the program's own study descended into these results

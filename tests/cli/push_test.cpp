@@ -3,6 +3,7 @@
 
 #include "tests/cli/program.hpp"
 #include "tests/support/json.hpp"
+#include "tests/support/resealed.hpp"
 
 namespace ayumi::test {
 namespace {
@@ -54,14 +55,14 @@ TEST(PushCommand, GoesOnFromItsResultsForAnyNumberOfThreads) {
   }
   partly["cases"].erase(0);
   partly["cases"][0]["open_loop"]["runs"] = 1234;  // this result is kept and not computed again
-  write(study.folder / "results.json", partly.dump());
+  write(study.folder / "results.json", resealed(partly));
   std::vector<std::string> again = study.command;
   again.back() = "2";
   ASSERT_EQ(study.run(again).exit_code, 0);
   Json joined = json_of(contents(study.folder / "results.json"));
   EXPECT_EQ(joined["cases"][1]["open_loop"]["runs"], 1234);
   joined["cases"][1]["open_loop"]["runs"] = json_of(whole)["cases"][1]["open_loop"]["runs"];
-  EXPECT_EQ(joined, json_of(whole));
+  EXPECT_EQ(resealed(joined), resealed(json_of(whole)));
 
   const Output other = study.run(study.command, {"--gain", "ka=1"});
   EXPECT_EQ(other.exit_code, 3);
@@ -77,12 +78,34 @@ TEST(PushCommand, GoesOnFromItsResultsForAnyNumberOfThreads) {
         std::pair("/cases/0/limits/0/impulse_Ns", 1e308)}) {
     Json edited = json_of(whole);
     edited[Json::json_pointer(place)] = value;
-    write(study.folder / "results.json", edited.dump());
+    write(study.folder / "results.json", resealed(edited));
     const Output refused = study.run(study.command);
     EXPECT_EQ(refused.exit_code, 3) << place << refused.out;
     EXPECT_NE(refused.err.find("this file has a push with numbers that no push has"),
               std::string::npos)
         << place << refused.err;
+  }
+}
+
+// An edited limit would be believed when the study is continued.
+TEST(PushCommand, RefusesResultsThatWereEdited) {
+  const Study study;
+  ASSERT_EQ(study.run(study.command).exit_code, 0);
+  const std::string whole = contents(study.folder / "results.json");
+  EXPECT_TRUE(is_sealed(whole));
+  Json older = json_of(whole);
+  older.erase(kSealKey);
+  std::string edited = whole;
+  edited.replace(edited.find("\"capped\": false"), 15, "\"capped\": true ");
+  for (const auto& [text, why] :
+       {std::pair(edited, "the file has changed since Ayumi wrote it"),
+        std::pair(older.dump(1), "older version of Ayumi wrote it, or it was changed")}) {
+    write(study.folder / "results.json", text);
+    const Output refused = study.run(study.command);
+    EXPECT_EQ(refused.exit_code, 3) << refused.out;
+    EXPECT_NE(refused.err.find(why), std::string::npos) << refused.err;
+    EXPECT_NE(refused.err.find("replace the file with --force"), std::string::npos) << refused.err;
+    EXPECT_EQ(contents(study.folder / "results.json"), text);
   }
 }
 

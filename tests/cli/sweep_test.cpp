@@ -6,6 +6,7 @@
 
 #include <sstream>
 
+#include "ayumi/io/run/sha256.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/support/json.hpp"
 
@@ -52,6 +53,53 @@ void execute(const fs::path& file, const std::string& sql) {
   EXPECT_EQ(sqlite3_exec(database, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK)
       << sql << ": " << sqlite3_errmsg(database);
   sqlite3_close(database);
+}
+
+/// The rows of a query; the cells of a row as docs/formats.md says that the seal counts them.
+std::vector<std::string> rows_of(const fs::path& file, const std::string& sql) {
+  sqlite3* database = nullptr;
+  sqlite3_stmt* statement = nullptr;
+  EXPECT_EQ(sqlite3_open(file.c_str(), &database), SQLITE_OK);
+  EXPECT_EQ(sqlite3_prepare_v2(database, sql.c_str(), -1, &statement, nullptr), SQLITE_OK);
+  std::vector<std::string> rows;
+  while (sqlite3_step(statement) == SQLITE_ROW) {
+    std::string row;
+    for (int i = 0; i < sqlite3_column_count(statement); ++i) {
+      const int type = sqlite3_column_type(statement, i);
+      const double number = sqlite3_column_double(statement, i);
+      const auto* const text = reinterpret_cast<const char*>(sqlite3_column_text(statement, i));
+      if (type == SQLITE_NULL) row += "n";
+      if (type == SQLITE_INTEGER) row += "i" + std::string(text) + ";";
+      if (type == SQLITE_FLOAT)
+        row += "d" + std::string(reinterpret_cast<const char*>(&number), sizeof number);
+      if (type == SQLITE_TEXT)
+        row += "t" + std::to_string(std::string(text).size()) + ";" + std::string(text);
+    }
+    rows.push_back(row);
+  }
+  sqlite3_finalize(statement);
+  sqlite3_close(database);
+  return rows;
+}
+
+/// The seal of the rows of a database, computed without Ayumi's class.
+std::string seal_of(const fs::path& file) {
+  const std::string fingerprint =
+      rows_of(file, "SELECT value FROM about WHERE key = 'fingerprint'").at(0).substr(4);
+  std::vector<std::string> hashes = {sha256(fingerprint)};
+  for (const std::string& row : rows_of(file, "SELECT * FROM cases")) hashes.push_back(sha256(row));
+  const std::string digits = "0123456789abcdef";
+  std::string sum(64, '0');
+  size_t carry = 0;
+  for (size_t i = sum.size(); i-- > 0; carry /= 16) {
+    for (const std::string& hash : hashes) carry += digits.find(hash[i]);
+    sum[i] = digits[carry % 16];
+  }
+  return sum;
+}
+
+void seal_anew(const fs::path& file) {
+  execute(file, "UPDATE about SET value = '" + seal_of(file) + "' WHERE key = 'rows_sha256'");
 }
 
 std::string read_csv(const Sweep& s, const std::string& database) {
@@ -191,12 +239,48 @@ TEST(SweepCommand, MergeNamesTheFilesThatDiffer) {
   ASSERT_EQ(s.sweep({"-o", "a.db"}).exit_code, 0);
   fs::copy(s.folder / "a.db", s.folder / "b.db");
   execute(s.folder / "b.db", "UPDATE cases SET outcome = 'standS' WHERE outcome = 'stands'");
+  seal_anew(s.folder / "b.db");
   const Output merged = s.run({"sweep", "merge", "a.db", "b.db", "-o", "m.db"});
   EXPECT_EQ(merged.exit_code, 3);
   EXPECT_NE(merged.err.find(" differs from the result in m.db; nothing of b.db was merged"),
             std::string::npos)
       << merged.err;
   EXPECT_FALSE(fs::exists(s.folder / "m.db"));
+}
+
+// An edited outcome would be believed when the study is continued.
+TEST(SweepCommand, RowsThatWereEditedAreRefused) {
+  const Sweep s;
+  ASSERT_EQ(s.sweep({"-o", "a.db", "--shard", "1/2"}).exit_code, 0);
+  ASSERT_EQ(s.sweep({"-o", "b.db", "--shard", "2/2"}).exit_code, 0);
+  ASSERT_EQ(s.run({"sweep", "merge", "a.db", "b.db", "-o", "good.db"}).exit_code, 0);
+  for (const char* const file : {"a.db", "b.db", "good.db"})
+    EXPECT_EQ(rows_of(s.folder / file, "SELECT value FROM about WHERE key = 'rows_sha256'").at(0),
+              "t64;" + seal_of(s.folder / file));
+  const std::string good = contents(s.folder / "good.db");
+  for (const std::string sql :
+       {"UPDATE cases SET outcome = 'unsettled' WHERE \"case\" = 0",
+        "UPDATE cases SET severity = severity * (1 + 1e-15) WHERE \"case\" = 1",
+        "DELETE FROM cases WHERE \"case\" = 1",
+        "UPDATE about SET value = 'x' WHERE key = 'rows_sha256'",
+        "DELETE FROM about WHERE key = 'rows_sha256'"}) {
+    write(s.folder / "odd.db", good);
+    execute(s.folder / "odd.db", sql);
+    for (const std::vector<std::string>& words :
+         {std::vector<std::string>{"sweep", "study.json", "-o", "odd.db"},
+          {"sweep", "status", "odd.db"},
+          {"sweep", "merge", "odd.db", "a.db"},
+          {"sweep", "merge", "a.db", "odd.db"}}) {
+      const Output refused = s.run(words);
+      EXPECT_EQ(refused.exit_code, 3) << sql << refused.out;
+      EXPECT_NE(refused.err.find("odd.db: "), std::string::npos) << refused.err;
+      EXPECT_NE(refused.err.find(sql.find("about") == std::string::npos
+                                     ? "have changed since ayumi sweep wrote them"
+                                     : "odd.db: this file does not hold results of ayumi sweep"),
+                std::string::npos)
+          << sql << refused.err;
+    }
+  }
 }
 
 TEST(SweepCommand, FilesOfOneCommandDiffer) {
@@ -337,9 +421,9 @@ TEST(SweepCommand, OneClearLineForBadInput) {
   // The same holds for a refused file of another version, which differs in the head of the
   // database.
   std::string later = good;
-  later.replace(60, 4, std::string("\0\0\0\2", 4));  // this is PRAGMA user_version
+  later.replace(60, 4, std::string("\0\0\0\1", 4));  // this is PRAGMA user_version
   write(s.folder / "later.db", later);
-  expect(s.run({"sweep", "status", "later.db"}), 3, "the results have version 2 of the format");
+  expect(s.run({"sweep", "status", "later.db"}), 3, "the results have version 1 of the format");
   for (const char* const file : {"good.db", "later.db"})
     for (const char* const part : {"-wal", "-shm"})
       EXPECT_FALSE(fs::exists(s.folder / (std::string(file) + part))) << file;

@@ -238,7 +238,8 @@ void motion_seeds(const Seeds& seeds) {
 const char* const kPush =
     R"({"format": "ayumi.push/1", "study": {"controllers": [{"type": "none"}, {"type": "dtad"}]},
 "cases": [{"phase": "single support left", "at_s": 1.5, "direction_rad": 0.5, "bound_Ns": 0.9,
-"open_loop": {"impulse_Ns": 0.2}, "limits": [{"impulse_Ns": 0.2, "capped": false}, {"impulse_Ns": 1.1, "capped": true}]}]})";
+"open_loop": {"impulse_Ns": 0.2}, "limits": [{"impulse_Ns": 0.2, "capped": false}, {"impulse_Ns": 1.1, "capped": true}]}]
+})";
 
 void run_seeds(const Seeds& seeds) {
   const RobotModel& model = fuzz::hoap1();

@@ -19,6 +19,7 @@
 #include "ayumi/io/run/sha256.hpp"
 #include "ayumi/io/run/simulation_log_file.hpp"
 #include "tests/support/error_message.hpp"
+#include "tests/support/json.hpp"
 #include "tests/support/random_robot.hpp"
 
 namespace ayumi {
@@ -151,7 +152,7 @@ TEST(SimulationLogFile, NoFieldOfASampleIsForgotten) {
   // of the law 8 3-vectors, 11 scalars and the stage; residuals 4.
   const size_t columns = 21 + 24 + 3 * 21 + 6 + 4 + 2 + 1 + (3 * 8 + 11 + 1) + 4;
   EXPECT_EQ(bytes.size(), 16 + header + 20 * columns * 8);
-  const auto json = nlohmann::json::parse(bytes.substr(16, header));
+  const auto json = test::json_of(bytes.substr(16, header));
   EXPECT_EQ(json.at("columns").size(), columns);
   EXPECT_EQ(json.at("columns").at(0), "base.x[m]");
   const size_t fields_of_plain_sample =
@@ -357,7 +358,7 @@ TEST(RunFolderFile, ReadsBackWhatWasWritten) {
   EXPECT_EQ(log_bytes(back.logs.at("open_loop")), log_bytes(random_log(6)));
   EXPECT_EQ(back.reference->rows.size(), 3u);
   ASSERT_EQ(back.sections.size(), 2u);
-  EXPECT_EQ(nlohmann::json::parse(back.sections[0].second).at("verdict"), "consistent");
+  EXPECT_EQ(test::json_of(back.sections[0].second).at("verdict"), "consistent");
   EXPECT_EQ(log_hash(read_run_log(folder)), log_hash(random_log(7)));
   EXPECT_EQ(log_hash(read_run_log(folder, "open_loop")), log_hash(random_log(6)));
   EXPECT_EQ(log_hash(read_run_log(folder / "log_open_loop.bin")), log_hash(random_log(6)));

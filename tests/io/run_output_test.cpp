@@ -43,7 +43,7 @@ class RunOutputTest : public testing::Test {
   void killed_delivery(const Names& away, const Names& in) const {
     const pid_t child = ::fork();
     if (child == 0) {
-      const RunOutput output(target, true);
+      RunOutput output(target, true);
       RunFolder run;
       run.files = {"a.csv", "c.csv"};
       for (const std::string& name : run.files) write_file(output.file(name), "of the next run");
@@ -65,7 +65,7 @@ class RunOutputTest : public testing::Test {
 
 TEST_F(RunOutputTest, ShowsNothingBeforeItDelivers) {
   {
-    const RunOutput output(target, false);
+    RunOutput output(target, false);
     write_file(output.file("a.csv"), "half");
     EXPECT_FALSE(fs::exists(target / "a.csv"));
     EXPECT_FALSE(is_run_folder(target));

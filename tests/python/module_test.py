@@ -8,6 +8,7 @@ import os
 import pathlib
 import signal
 import subprocess
+import sys
 import tempfile
 import threading
 import time
@@ -588,6 +589,21 @@ class Pictures(unittest.TestCase):
             self.assertTrue(plot.startswith(b"\x89PNG"))
         self.assertIn("<svg", ayumi.loci_svg(task.robot, {"walk": log}))
 
+
+    def test_a_picture_needs_no_room_for_shaders(self):
+        # Mesa maps a file of its cache of shaders, and the system ended Python (SIGBUS) when this
+        # file did not fit on the disk.
+        mount = 'mount -t tmpfs -o size=64k none "$0"'
+        with tempfile.TemporaryDirectory() as folder:
+            def shell(text):
+                return subprocess.run(["unshare", "-Urm", "sh", "-c", text, folder, sys.executable],
+                                      env={**os.environ, "XDG_CACHE_HOME": folder}, capture_output=True)
+
+            if shell(mount).returncode != 0:
+                self.skipTest("a small file system cannot be mounted here")
+            drawn = shell(mount + ' && exec "$1" -c "import ayumi; '
+                          "print(ayumi.robot_picture(ayumi.load_robot('hoap1'))[1:4])\"")
+            self.assertEqual((drawn.returncode, drawn.stdout), (0, b"b'PNG'\n"), drawn.stderr)
 
     def test_a_plan_is_drawn_without_a_simulation(self):
         robot = ayumi.load_robot("hoap1")

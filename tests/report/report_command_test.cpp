@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ayumi/io/run/seal.hpp"
 #include "tests/render/standing_run.hpp"
 #include "tests/support/json.hpp"
 
@@ -22,12 +23,21 @@ TEST_F(ReportCommand, WritesOnePage) {
 }
 
 TEST_F(ReportCommand, TakesPushThresholds) {
-  write(folder / "run" / "push.json",
-        R"({"format": "ayumi.push/1", "study": {"controllers": [{"type": "dtad", "gains": {}}]},
+  const std::string push =
+      R"({"format": "ayumi.push/1", "study": {"controllers": [{"type": "dtad", "gains": {}}]},
             "cases": [{"phase": "both feet", "at_s": 0.1, "direction_rad": 1.5707963267948966,
                        "standing": true, "bound_Ns": 1.25, "edge_bound_Ns": 1.3,
                        "open_loop": {"impulse_Ns": 0.2, "capped": false},
-                       "limits": [{"impulse_Ns": 1.0, "capped": false}]}]})");
+                       "limits": [{"impulse_Ns": 1.0, "capped": false}]}]
+})";
+  write(folder / "run" / "push.json", push);
+  const Output older = ayumi({"report", "run", "-o", "r.html", "--no-replay"});
+  EXPECT_EQ(older.exit_code, 3);
+  EXPECT_NE(older.err.find("push.json: the file has no \"contents_sha256\": an older version of "
+                           "Ayumi wrote it, or it was changed; run `ayumi push` again"),
+            std::string::npos)
+      << older.err;
+  write(folder / "run" / "push.json", sealed(push));
   ASSERT_EQ(ayumi({"report", "run", "-o", "r.html", "--no-replay"}).exit_code, 0);
   const std::string html = contents(folder / "r.html");
   EXPECT_NE(html.find("Push thresholds"), std::string::npos);

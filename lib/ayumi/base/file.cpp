@@ -142,6 +142,7 @@ void write_file_with(const fs::path& path, const std::function<void(const fs::pa
   const fs::path folder = folder_of(path);
   const fs::path temporary = folder / (path.stem().string() + ".part" + std::to_string(getpid()) +
                                        path.extension().string());
+  const UnfinishedPath unfinished(temporary);
   try {
     produce(temporary);
     fs::rename(temporary, path);
@@ -178,10 +179,12 @@ FolderLock::FolderLock(const fs::path& folder) {
   file_ = locked.file;
   made_ = locked.made;
   descriptor_ = locked.descriptor;
+  unfinished_.emplace(file_, made_);
 }
 
 // A copy of the paths would need memory, of which nothing may be left.
 FolderLock::~FolderLock() {
+  unfinished_.reset();  // before another process can take the lock
   unlock_folder({std::move(folder_), std::move(file_), made_, descriptor_});
 }
 

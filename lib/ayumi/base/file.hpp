@@ -3,7 +3,10 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
+
+#include "ayumi/base/unfinished_files.hpp"
 
 namespace ayumi {
 
@@ -48,6 +51,7 @@ class FolderLock {
   std::filesystem::path folder_, file_;
   int made_ = 0;  // number of folders that the lock has made
   int descriptor_ = -1;
+  std::optional<UnfinishedPath> unfinished_;
 };
 
 }  // namespace ayumi

@@ -91,8 +91,12 @@ void unlock_folder(const LockedFolder& locked) {
 FileLock::FileLock(const fs::path& file)
     : locked_(lock_folder(file.string() + ".lock", file.string(),
                           "another command is writing to this file; wait until it has ended, or "
-                          "choose another name")) {}
+                          "choose another name")),
+      unfinished_(locked_.file, locked_.made) {}
 
-FileLock::~FileLock() { unlock_folder(locked_); }
+FileLock::~FileLock() {
+  unfinished_.release();  // before another process can take the lock
+  unlock_folder(locked_);
+}
 
 }  // namespace ayumi

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <string>
 
+#include "ayumi/base/unfinished_files.hpp"
+
 namespace ayumi {
 
 /// A folder that is locked by the file `.ayumi_lock` in it. It is made if necessary.
@@ -34,6 +36,7 @@ class FileLock {
 
  private:
   LockedFolder locked_;
+  UnfinishedPath unfinished_;
 };
 
 }  // namespace ayumi

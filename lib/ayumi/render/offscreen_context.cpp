@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/render/shader_cache.hpp"
 
 namespace ayumi {
 
@@ -38,6 +39,7 @@ OffscreenContext::OffscreenContext(Offscreen way) : way_(way) {
                                   std::string(way == Offscreen::osmesa ? "OSMesa"
                                               : way == Offscreen::egl  ? "EGL"
                                                                        : "OSMesa and without EGL"));
+  disable_shader_cache_on_full_disk();
   context_ =
       way_ == Offscreen::osmesa ? offscreen::Osmesa::create() : offscreen::Egl::create(display_);
   make_current();

@@ -12,6 +12,7 @@
 #include "ayumi/base/version.hpp"
 #include "ayumi/io/json/json_reader.hpp"
 #include "ayumi/io/run/provenance_fields.hpp"
+#include "ayumi/io/run/seal.hpp"
 #include "ayumi/io/run/sha256.hpp"
 #include "ayumi/io/run/sha256_stream.hpp"
 #include "ayumi/io/run/simulation_log_file.hpp"
@@ -30,7 +31,6 @@ constexpr const char* kReferenceFile = "reference.csv";
 constexpr const char* kPushedFile = "reference_pushed.csv";
 constexpr const char* kLightKey = "light";
 constexpr const char* kSizesKey = "file_bytes";
-constexpr const char* kSealKey = "contents_sha256";
 // Largest size of a file of a run [bytes]. Chosen: a log of half an hour at 1 kHz is smaller.
 constexpr size_t kLargestRunFile = size_t{4} << 30;
 // Largest size of a table of a run [bytes]: that of read_file().
@@ -88,16 +88,6 @@ OrderedJson summary_of(const RunFolder& run, const std::map<std::string, std::st
   json[kSizesKey] = OrderedJson::object();
   for (const auto& [name, hash] : hashes) json[kSizesKey][name] = size_of(folder / name);
   return json;
-}
-
-// The last member of run.json is the SHA-256 of the text before it.
-std::string seal_before(const std::string& text) {
-  return std::string(",\n  \"") + kSealKey + "\": \"" + sha256(text) + "\"\n}\n";
-}
-
-std::string sealed(const std::string& object) {
-  const std::string text = object.substr(0, object.rfind("\n}"));
-  return text + seal_before(text);
 }
 
 [[noreturn]] void complain_of_change(const fs::path& file, const std::string& what) {
@@ -204,7 +194,7 @@ struct RunFile {
       root.at("format").complain("'" + format + "' cannot be read; this version of Ayumi reads '" +
                                  kRunFormat + "'");
     // Runs of versions before 0.2.0 are not sealed.
-    if (root.has(kSealKey) && !is_sealed()) complain_of_change(path, kOtherHash);
+    if (root.has(kSealKey) && !is_sealed(text)) complain_of_change(path, kOtherHash);
   }
   // Throws unless the text has its own hash and the sizes of all files.
   void require_seal() const {
@@ -213,15 +203,11 @@ struct RunFile {
                       "' is missing: the file has changed, or an older version wrote it; make the "
                       "run again");
     };
-    if (!is_sealed()) missing(kSealKey);
+    if (!is_sealed(text)) missing(kSealKey);
     const auto sizes = root().find(kSizesKey);
     if (!sizes) missing(kSizesKey);
     for (const auto& [name, hash] : root().at("files").members())
       if (!sizes->has(name)) missing(std::string(kSizesKey) + "/" + name);
-  }
-  bool is_sealed() const {
-    const size_t at = text.rfind(std::string(",\n  \"") + kSealKey + "\"");
-    return at != std::string::npos && text.substr(at) == seal_before(text.substr(0, at));
   }
   // Throws unless run.json lists, with hash and size, every file that a reader takes for a part of
   // the run, and names no file outside of the folder. Otherwise a file would be read that no hash

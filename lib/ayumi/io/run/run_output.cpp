@@ -129,6 +129,7 @@ RunOutput::RunOutput(const fs::path& folder, bool replace)
   if (error)
     fail(ErrorCode::bad_file, {target_.string()},
          "the folder cannot be written (" + error.message() + ")");
+  unfinished_.emplace(staging_);
 }
 
 RunOutput::~RunOutput() {
@@ -139,7 +140,8 @@ RunOutput::~RunOutput() {
   }
 }
 
-void RunOutput::deliver() const {
+void RunOutput::deliver() {
+  unfinished_.reset();  // from here on, the next start needs these files to undo a delivery
   const std::vector<std::string> names = names_in(staging_);
   require_run_target(target_, replace_, names);
   const std::set<std::string> previous = files_of_run_in(target_);

@@ -3,6 +3,7 @@
 // appear together when all of them are complete, and files of the user stay in it.
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,12 +34,13 @@ class RunOutput {
   /// last. Throws the same errors as require_run_target(), or if a file cannot be moved; then the
   /// previous run is brought back. A process that is killed in between leaves a folder without
   /// run.json, and the next RunOutput first brings back the previous run.
-  void deliver() const;
+  void deliver();
 
  private:
   std::filesystem::path target_, staging_, replaced_;
   bool replace_;
   FolderLock lock_;
+  std::optional<UnfinishedPath> unfinished_;
 };
 
 }  // namespace ayumi

@@ -2,11 +2,13 @@
 
 #include <limits>
 
+#include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/largest_number.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/consistency.hpp"
 #include "ayumi/io/json/json_reader.hpp"
+#include "ayumi/io/run/seal.hpp"
 
 namespace ayumi {
 namespace {
@@ -142,11 +144,14 @@ RunResults read_results(const RunFolder& run, const std::string& file) {
 }
 
 std::vector<PushThreshold> read_push_thresholds(const std::filesystem::path& file) {
-  const Json document = parse_json(read_file(file), file.string(), ErrorCode::bad_file);
+  const std::string bytes = read_file(file);
+  const Json document = parse_json(bytes, file.string(), ErrorCode::bad_file);
   const JsonNode root = root_of(document, file.string(), ErrorCode::bad_file);
   root.expect_object();
   if (root.at("format").string() != "ayumi.push/1")
     root.at("format").complain("this is not the results file of a push study (ayumi.push/1)");
+  if (const std::string wrong = wrong_seal(bytes); !wrong.empty())
+    fail(ErrorCode::bad_file, {file.string()}, wrong + "; run `ayumi push` again with --force");
   std::vector<std::string> controllers;
   for (const JsonNode& controller : root.at("study").at("controllers").items())
     controllers.push_back(controller.at("type").string());

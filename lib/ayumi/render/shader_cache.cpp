@@ -1,11 +1,11 @@
-#include "shader_cache.hpp"
+#include "ayumi/render/shader_cache.hpp"
 
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
-#include <string>
+#include <mutex>
 
-namespace ayumi::app {
+namespace ayumi {
 
 namespace {
 
@@ -23,9 +23,11 @@ fs::path cache_folder() {
   return home && *home ? fs::path(home) / ".cache" : fs::path();
 }
 
-}  // namespace
+// The variable of Mesa that switches the cache off.
+constexpr const char* kSwitch = "MESA_SHADER_CACHE_DISABLE";
 
-void spare_full_disk_of_shaders() {
+void disable_without_room() {
+  if (std::getenv(kSwitch)) return;
   std::error_code error;
   fs::path folder = cache_folder();
   if (!folder.empty()) folder = fs::absolute(folder, error);
@@ -33,7 +35,14 @@ void spare_full_disk_of_shaders() {
     folder = folder.parent_path();
   if (folder.empty()) return;
   const fs::space_info room = fs::space(folder, error);
-  if (!error && room.available < kLeastRoom) ::setenv("MESA_SHADER_CACHE_DISABLE", "true", 0);
+  if (!error && room.available < kLeastRoom) ::setenv(kSwitch, "true", 0);
 }
 
-}  // namespace ayumi::app
+}  // namespace
+
+void disable_shader_cache_on_full_disk() {
+  static std::once_flag once;
+  std::call_once(once, disable_without_room);
+}
+
+}  // namespace ayumi
