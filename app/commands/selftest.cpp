@@ -254,7 +254,7 @@ const std::array<Job, 8> kJobs = {{
     {"check", "findings and likely causes of patterns with mistakes", check_text,
      "1a4d448e321962bb909d9e3d8a191daa297465acc3f50820fa51788ac8680048"},
     {"repair", "a repaired walk", repair_text,
-     "16a496a391adf500cd5316e5b640ab9626fce3f2cea47a77d8aa2ad8a57cf4d8"},
+     "1fc3abdbbca1ba9965f8162b7812820465c6c5e4e11cb991a59f00eb1a1f8b86"},
     {"push", "limits of pushes", push_text,
      "f92ef0c7236b3bc0d650cdbc1efe91882256146b603508fde3cc6b4e67e704c3"},
 }};

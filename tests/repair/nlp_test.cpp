@@ -72,7 +72,7 @@ TEST(Nlp, ImpossibleConstraintIsInfeasible) {
 TEST(Nlp, EndsAtAKink) {
   NlpOptions options;
   EXPECT_EQ(solve(kink(), options).status, NlpStatus::iteration_limit);
-  options.stops_at_a_kink = true;
+  options.still_change = repair_policy::solver::kKinkChange;
   const NlpSolution s = solve(kink(), options);
   EXPECT_EQ(s.status, NlpStatus::solved);
   EXPECT_LT(s.iterations, 40);

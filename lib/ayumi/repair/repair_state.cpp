@@ -155,7 +155,9 @@ NlpSolution solve_relaxing_goals(RepairState& state, Nlp& hard, const std::strin
   if (start.warm) make_room(options, start.violation);
   options.most_work = work_left(state, policy::rounds::kWorkForReasons);
   if (!state.flight) options.tolerance = tolerance;
-  options.stops_at_a_kink = tolerance >= policy::rounds::kTolerance;
+  const bool is_round = tolerance >= policy::rounds::kTolerance;
+  options.still_change = is_round ? policy::solver::kKinkChange : policy::solver::kStillChange;
+  if (!is_round) options.still_complementarity = policy::solver::kStillBarrier * tolerance;
   if (!state.flight && state.result.work.rounds == 0)
     options.max_iterations = std::min(options.max_iterations, policy::rounds::kBeforeFinerKnots);
   const Slacks slacks = soft_goal_slacks(*state.problem, state.series.dt, state.options.safety,

@@ -117,7 +117,9 @@ void solve_at_the_limits(RepairState& state, const PassingResult& passing) {
     solve_program(state, "repair, least change", tolerance);
     if (state.status != NlpStatus::solved || state.result.check.consistent) return;
     const bool last = round + 1 == policy::tighten::kMostRounds;
-    if (!last && take_first_passing(state, passing, policy::tighten::kMostBack)) return;
+    const double most_back =
+        round == 0 ? policy::tighten::kMostBack : policy::tighten::kMostBackLater;
+    if (!last && take_first_passing(state, passing, most_back)) return;
     add_error_times(state.result.check, state.series.dt, state.spec.extra_times);
     state.spec.initial =
         between(state.track, passing.track, policy::tighten::kStartBack).coefficients;

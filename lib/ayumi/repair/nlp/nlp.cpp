@@ -219,14 +219,15 @@ void start_with_multipliers(Ipopt::OptionsList& list, double push) {
     list.SetNumericValue(name, push);
 }
 
-// Ends a search that alternates between points on both sides of a kink. Ipopt calls such a point
-// acceptable.
-void stop_at_a_kink(Ipopt::OptionsList& list, double constraint_tolerance) {
+// Ends a search that alternates between points on both sides of a kink, or whose multipliers grow
+// because two rows say the same. Ipopt calls such a point acceptable.
+void stop_where_still(Ipopt::OptionsList& list, const NlpOptions& options) {
   using namespace repair_policy::solver;
   list.SetIntegerValue("acceptable_iter", kKinkIterations);
-  list.SetNumericValue("acceptable_obj_change_tol", kKinkChange);
-  list.SetNumericValue("acceptable_constr_viol_tol", constraint_tolerance);
-  for (const char* name : {"acceptable_tol", "acceptable_dual_inf_tol", "acceptable_compl_inf_tol"})
+  list.SetNumericValue("acceptable_obj_change_tol", options.still_change);
+  list.SetNumericValue("acceptable_constr_viol_tol", options.constraint_tolerance);
+  list.SetNumericValue("acceptable_compl_inf_tol", options.still_complementarity);
+  for (const char* name : {"acceptable_tol", "acceptable_dual_inf_tol"})
     list.SetNumericValue(name, kKinkGradient);
 }
 
@@ -247,7 +248,7 @@ void set_options(Ipopt::OptionsList& list, const NlpOptions& options) {
   list.SetNumericValue("compl_inf_tol", options.tolerance);
   list.SetNumericValue("constr_viol_tol", options.constraint_tolerance);
   list.SetIntegerValue("max_iter", options.max_iterations);
-  if (options.stops_at_a_kink) stop_at_a_kink(list, options.constraint_tolerance);
+  if (options.still_change > 0) stop_where_still(list, options);
   list.SetNumericValue("bound_relax_factor", 0);
   list.SetIntegerValue("min_refinement_steps", 0);
 }

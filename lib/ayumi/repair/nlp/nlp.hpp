@@ -67,9 +67,12 @@ struct NlpOptions {
   /// Tolerance of g, unscaled.
   double constraint_tolerance = repair_policy::solver::kConstraintTolerance;
   /// Distances of bodies have kinks, where Newton's steps may alternate between two points without
-  /// end. If this is set, the solution ends with the status solved where several iterations in turn
-  /// keep all constraints and leave the objective nearly as it is.
-  bool stops_at_a_kink = false;
+  /// end. If this is above 0, the solution ends with the status solved where several iterations in
+  /// turn keep all constraints and change the objective by less than this share of it (or of 1, if
+  /// the objective is smaller).
+  double still_change = 0;
+  /// Largest complementarity with which such a search ends.
+  double still_complementarity = repair_policy::solver::kKinkGradient;
   bool mumps = false;  ///< use MUMPS for the linear systems of every program
   /// Solves linear systems without the widest vector instructions; the bits are the same.
   bool plain_kernels = false;
