@@ -3,7 +3,7 @@
 import { byId, element, fixed, refill, shape } from "./dom.js";
 import { rowAt } from "./series.js";
 
-const high = 84, top = 8, bottom = 6, letters = 10;
+const high = 84, top = 8, bottom = 6, letters = 11;
 const colors = ["#0b6fc2", "#c2570b", "#0a8754", "#9b2fae", "#b01e3c", "#6b6b00"];
 /// The smallest range of an axis; smaller changes are noise of the computation.
 const leastRange = { mm: 1, deg: 0.1, "deg/s": 1, N: 1, "N m": 0.01 };
@@ -139,14 +139,14 @@ export class Curves {
       const room = 0.06 * (most - low);
       [low, most] = [low - room, most + room];
       const y = (value) => top + (high - top - bottom) * (most - value) / (most - low);
-      const labelled = [];
+      const labelled = [], words = [];
       for (const value of levels(low, most)) {
         inner.append(shape("line", { class: "level", x1: 0, x2: wide, y1: y(value), y2: y(value) }));
         // The label is above its line, or below it at the top of the picture, unless another label is there.
         const place = y(value) < letters + 2 ? y(value) + letters : y(value) - 2;
         if (labelled.some((other) => Math.abs(other - place) < letters)) continue;
         labelled.push(place);
-        inner.append(shape("text", { class: "scale", x: 3, y: place }, `${value} ${list[0].unit}`));
+        words.push(shape("text", { class: "scale", x: 3, y: place }, `${value} ${list[0].unit}`));
       }
       const joint = list[0].joint && state.joints.find((one) => one.name === list[0].joint);
       for (const limit of joint ? [joint.low, joint.high] : []) {
@@ -158,6 +158,7 @@ export class Curves {
         inner.append(shape("polyline", { fill: "none", stroke: color, "stroke-width": dashes ? 1 : 1.6,
           "stroke-dasharray": dashes, points: points.map(([t, value]) =>
             `${(wide * axis.shareOf(t)).toFixed(1)},${y(value).toFixed(1)}`).join(" ") }));
+      inner.append(...words);  // above the curves, with a halo, so that no curve strikes them out
       svg.lastChild.replaceWith(inner);
       svg.querySelector("title").textContent = `${list.map((one) => one.label).join(", ")} in ${list[0].unit}` +
         ` from ${(low + room).toFixed(1)} to ${(most - room).toFixed(1)}`;
