@@ -78,6 +78,10 @@ class Trial:
             wrong.append(f"exit code {code} without a message")
         elif code == 5:
             wrong.append(f"an internal error: {err[-300:]!r}")
+        if code == STOPPED:
+            left = [name for _, folders, files in os.walk(self.folder) for name in folders + files
+                    if name.startswith(".ayumi_") or f".part{process.pid}" in name]
+            wrong += [f"{name} was left behind" for name in left]
         done = code in (0, 1)
         for name in self.outputs:
             wrong += self.complaints_about(name, done)
@@ -222,6 +226,10 @@ def slow_commands(program, walk):
                                ["results.db"], goes_on=True),
         "author": lambda: Editor(program),
     }
+
+
+# Exit code after Ctrl-C or SIGTERM.
+STOPPED = 130
 
 
 class Report:
