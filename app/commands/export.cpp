@@ -298,11 +298,13 @@ std::string log_of_table(const ExportOptions& options, const RunFolder& run) {
 
 // Throws Error(bad_file) if the tick of the log is not the servo period with which the recorded
 // robot is simulated. Otherwise the speeds and torques of the table would be judged at another
-// rate.
-void require_tick_of(const RobotModel& model, const ExportOptions& options,
+// rate. A log of `replay` has the tick of the motor boards.
+void require_tick_of(const RobotModel& model, const ExportOptions& options, const RunFolder& run,
                      const SimulationLog& log) {
   const double period = model.description().servo_period;
-  if (!options.robot.empty() || log.dt == period) return;
+  const bool replayed = std::any_of(run.sections.begin(), run.sections.end(),
+                                    [](const auto& section) { return section.first == "replay"; });
+  if (replayed || !options.robot.empty() || log.dt == period) return;
   fail(ErrorCode::bad_file, {options.input},
        "the log has a row every " + text::brief(1000 * log.dt) +
            " ms, but the servo period of robot '" + model.name() + "' is " +
@@ -314,7 +316,7 @@ Source source_of_run(const ExportOptions& options, const Context& context) {
   const RunFolder run = read_run(options.input, ComparedFiles::all);
   const SimulationLog& log = log_of_run(run, options.input, log_of_table(options, run));
   const RobotModel model = robot_of_log(context, options.robot, log, options.input);
-  require_tick_of(model, options, log);
+  require_tick_of(model, options, run, log);
   const CautiousTable table = table_of_run(options, run, log, model);
   Source source = source_of_table(options, context, table.reference, table.caution);
   if (log.samples.size() == source.reference.rows.size()) source.torque = torques_of(log);
