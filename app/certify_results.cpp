@@ -69,8 +69,9 @@ std::string add_case_results(const std::filesystem::path& file, const Json& stud
   };
   // A file to be merged must exist; any other one is the file of -o.
   const std::string remedy =
-      must_exist ? "leave this file out of --merge, or run the shard of this file again"
-                 : "choose another name, or replace the file with --force";
+      must_exist
+          ? "leave this file out of --merge, or run the shard of this file again with --force"
+          : "choose another name, or replace the file with --force";
   const std::string bytes = read_file(file);
   try {
     const auto json = shallow_json<nlohmann::json>(bytes);

@@ -182,19 +182,10 @@ void set_rate(const ExportOptions& options, Source& source) {
   if (source.kept && !options.layout.empty() && options.layout != source.kept->file.layout.name)
     source.kept.reset();
   if (options.format != "hoap" || source.kept) return;
-  const SequenceLayout layout = written_layout(source.model, options.layout);
-  const double ms = 1000 * period;
-  std::vector<std::string> known;
-  bool takes = layout.intervals_ms.empty();
-  for (const int interval : layout.intervals_ms) {
-    known.push_back(std::to_string(interval));
-    takes = takes || std::abs(ms - interval) < 1e-6;
-  }
-  if (!takes)
-    fail(ErrorCode::bad_file, {options.output},
-         "the table has a row every " + text::brief(ms) + " ms, but the layout '" + layout.name +
-             "' of '" + source.model.name() + "' allows only " + text::join(known, ", ") +
-             " ms; choose one of these with --interval");
+  const std::string refusal = refusal_of_interval(
+      source.model, written_layout(source.model, options.layout), source.reference.dt);
+  if (!refusal.empty())
+    fail(ErrorCode::bad_file, {options.output}, refusal + "; choose another one with --interval");
 }
 
 Source source_of_table(const ExportOptions& options, const Context& context,

@@ -276,7 +276,8 @@ void MainJob::write_hoap(const Task& input) {
               ")";
     } catch (const Error& error) {  // the run is whole without a file that cannot hold its table
       if (error.code() != ErrorCode::bad_pattern) throw;
-      text += std::string("; hoap.csv is not written: ") + error.what();
+      text += std::string("; hoap.csv is not written: ") + error.what() +
+              " (`ayumi export` can write the table at another interval)";
     }
   } else if (encoders && !safe.report.safe) {
     text += (options_.light ? "; the table for the robot is unsafe: "

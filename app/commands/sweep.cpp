@@ -10,6 +10,7 @@
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/file_lock.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/base/unfinished_files.hpp"
 #include "option_checks.hpp"
 #include "output_files.hpp"
 #include "pattern_input.hpp"
@@ -100,13 +101,15 @@ void conclude(Context& context, const ResultsDatabase& results, const SweepOutpu
 /// Removes the files that SQLite keeps beside a database that is in use.
 void remove_companions(const fs::path& file) {
   std::error_code ignored;
-  for (const char* part : {"-wal", "-shm"}) fs::remove(file.string() + part, ignored);
+  for (const char* part : {"-wal", "-shm", "-journal"}) fs::remove(file.string() + part, ignored);
 }
 
 /// Calls `work`. In the message of its error, the name of the file replaces that of the temporary
 /// file.
 void with_name_of(const fs::path& file, const fs::path& temporary,
                   const std::function<void()>& work) {
+  const std::string name = temporary.string();
+  const UnfinishedPath log(name + "-wal"), index(name + "-shm"), journal(name + "-journal");
   try {
     work();
   } catch (const Error& error) {

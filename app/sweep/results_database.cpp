@@ -493,9 +493,8 @@ void ResultsDatabase::require_unchanged() const {
   if (!(found == recorded_seal()))
     fail(ErrorCode::bad_file, {file_.string()},
          "the results have changed since ayumi sweep wrote them (their SHA-256 differs from "
-         "\"rows_sha256\" of the table 'about'); run the study again with --force, or choose "
-         "another "
-         "name");
+         "\"rows_sha256\" of the table 'about'); leave this file out, or run the study again with "
+         "--force");
 }
 
 std::vector<std::string> ResultsDatabase::shards() const {

@@ -4,8 +4,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <fstream>
 #include <functional>
+#include <thread>
 #include <vector>
 
 #include "ayumi/base/file.hpp"
@@ -52,7 +54,8 @@ TEST_F(UnfinishedFiles, AreRemovedWithWhatIsInThem) {
     file(name);
   fs::create_directory_symlink(folder / "mine", folder / "part/link");
   in_stopped_process([&] {
-    const UnfinishedPath part(folder / "part"), other(folder / "other"), none(folder / "none");
+    const UnfinishedPath part(folder / "part", UnfinishedPath::Kind::folder);
+    const UnfinishedPath other(folder / "other"), none(folder / "none"), as_file(folder / "mine");
     UnfinishedPath kept(folder / "kept");
     kept.release();
     stop();
@@ -67,7 +70,7 @@ TEST_F(UnfinishedFiles, AreRemovedWithWhatIsInThem) {
 TEST_F(UnfinishedFiles, AFolderMayHaveThousandsOfFiles) {
   for (int i = 0; i < 3000; ++i) file("part/frame_" + std::to_string(i));
   in_stopped_process([&] {
-    const UnfinishedPath part(folder / "part");
+    const UnfinishedPath part(folder / "part", UnfinishedPath::Kind::folder);
     stop();
   });
   EXPECT_FALSE(fs::exists(folder / "part"));
@@ -106,6 +109,26 @@ TEST_F(UnfinishedFiles, MoreThanThereIsRoomForStay) {
     stop();
   });
   EXPECT_TRUE(fs::exists(folder / "last"));
+}
+
+// Work that goes on in another thread does not get past the end of its file's registration, because
+// what it does next may need the file.
+TEST_F(UnfinishedFiles, AreNotReleasedWhileTheyAreRemoved) {
+  for (int i = 0; i < 3000; ++i) file("part/frame_" + std::to_string(i));
+  in_stopped_process([&] {
+    UnfinishedPath part(folder / "part", UnfinishedPath::Kind::folder);
+    std::thread work([&] {
+      while (fs::exists(folder / "part/frame_0") && fs::exists(folder / "part/frame_2999")) {
+      }
+      part.release();
+      file("went_on");
+    });
+    remove_unfinished();
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    ::_exit(0);
+  });
+  EXPECT_FALSE(fs::exists(folder / "part"));
+  EXPECT_FALSE(fs::exists(folder / "went_on"));
 }
 
 }  // namespace

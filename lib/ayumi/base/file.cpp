@@ -179,7 +179,7 @@ FolderLock::FolderLock(const fs::path& folder) {
   file_ = locked.file;
   made_ = locked.made;
   descriptor_ = locked.descriptor;
-  unfinished_.emplace(file_, made_);
+  unfinished_.emplace(file_, UnfinishedPath::Kind::file, made_);
 }
 
 // A copy of the paths would need memory, of which nothing may be left.

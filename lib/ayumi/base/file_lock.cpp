@@ -92,7 +92,7 @@ FileLock::FileLock(const fs::path& file)
     : locked_(lock_folder(file.string() + ".lock", file.string(),
                           "another command is writing to this file; wait until it has ended, or "
                           "choose another name")),
-      unfinished_(locked_.file, locked_.made) {}
+      unfinished_(locked_.file, UnfinishedPath::Kind::file, locked_.made) {}
 
 FileLock::~FileLock() {
   unfinished_.release();  // before another process can take the lock

@@ -30,6 +30,7 @@ enum class Use { free, changing, removed_at_end };
 struct Slot {
   std::atomic<Use> use = Use::free;
   std::atomic<long> age = 0;
+  UnfinishedPath::Kind kind = UnfinishedPath::Kind::file;
   int made = 0;
   std::array<char, PATH_MAX> path = {};
 };
@@ -74,19 +75,23 @@ void remove_at(int folder, const char* name, int depth) {
   }
 }
 
-void remove(Slot& slot) {
-  remove_at(AT_FDCWD, slot.path.data(), 0);
+void remove(const Slot& slot) {
+  if (slot.kind == UnfinishedPath::Kind::folder)
+    remove_at(AT_FDCWD, slot.path.data(), 0);
+  else
+    ::unlink(slot.path.data());
+  std::array<char, PATH_MAX> around = slot.path;
   for (int i = 0; i < slot.made; ++i) {
-    char* const end = std::strrchr(slot.path.data(), '/');
+    char* const end = std::strrchr(around.data(), '/');
     if (!end) return;
     *end = '\0';
-    if (::rmdir(slot.path.data()) != 0) return;  // only an empty folder
+    if (::rmdir(around.data()) != 0) return;  // only an empty folder
   }
 }
 
 }  // namespace
 
-UnfinishedPath::UnfinishedPath(const std::filesystem::path& path, int made) {
+UnfinishedPath::UnfinishedPath(const std::filesystem::path& path, Kind kind, int made) {
   const std::string& text = path.native();
   if (text.empty() || text.size() >= PATH_MAX) return;
   for (int i = 0; i < kSlots; ++i) {
@@ -94,6 +99,7 @@ UnfinishedPath::UnfinishedPath(const std::filesystem::path& path, int made) {
     Use expected = Use::free;
     if (!slot.use.compare_exchange_strong(expected, Use::changing)) continue;
     std::memcpy(slot.path.data(), text.c_str(), text.size() + 1);
+    slot.kind = kind;
     slot.made = made;
     slot.age = ++latest;
     slot.use = Use::removed_at_end;
@@ -103,7 +109,10 @@ UnfinishedPath::UnfinishedPath(const std::filesystem::path& path, int made) {
 }
 
 void UnfinishedPath::release() {
-  if (slot_ >= 0) slots[static_cast<size_t>(slot_)].use = Use::free;
+  if (slot_ < 0) return;
+  Use expected = Use::removed_at_end;
+  if (!slots[static_cast<size_t>(slot_)].use.compare_exchange_strong(expected, Use::free))
+    for (;;) ::pause();
   slot_ = -1;
 }
 

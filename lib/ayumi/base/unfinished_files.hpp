@@ -6,19 +6,22 @@
 
 namespace ayumi {
 
-/// While this object exists, remove_unfinished() removes the path: a file, or a folder with
-/// everything in it. Symbolic links in it are removed and not followed. A path that is too long for
-/// the system, or that comes after 64 others, is not removed.
+/// While this object exists, remove_unfinished() removes the path. A path that is too long for the
+/// system, or that comes after 64 others, is not removed.
 class UnfinishedPath {
  public:
+  /// A folder is removed with everything in it. Symbolic links in it are removed and not followed.
+  enum class Kind { file, folder };
+
   /// `made`: number of folders to remove afterwards if they are empty: the one around the path, the
   /// one around that, and so on.
-  explicit UnfinishedPath(const std::filesystem::path& path, int made = 0);
+  explicit UnfinishedPath(const std::filesystem::path& path, Kind kind = Kind::file, int made = 0);
   ~UnfinishedPath() { release(); }
   UnfinishedPath(UnfinishedPath&& other) noexcept : slot_(other.slot_) { other.slot_ = -1; }
   UnfinishedPath(const UnfinishedPath&) = delete;
   UnfinishedPath& operator=(const UnfinishedPath&) = delete;
-  /// The path is not removed any more.
+  /// The path is not removed any more. If it is being removed, this function does not return,
+  /// because the process is about to end.
   void release();
 
  private:

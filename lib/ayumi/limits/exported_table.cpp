@@ -86,11 +86,6 @@ const RowKind kStepRows = {.name = "table_step", .order = {3, 4}};
 const RowKind kTargetRows = {
     .name = "table_position", .unit = &RowPrices::angle, .beyond_check = true, .order = {3, 5}};
 
-// Largest share of a step by which the row of its rate is made stricter. Chosen: kinks of usual
-// motions give less than 0.01; a jump is repaired by its own rows. Test:
-// FromScratch.JumpsOfATallRobotNeedFewPrograms.
-constexpr double kMostBeyond = 0.05;
-
 // The row of a step has the rate of the target at one sample, but the table has differences of two
 // samples, which are larger at a peak with a kink. The latest motion shows by how much, as a rate.
 double step_beyond_rate(const RowSite& site, int point, int dof, double lead) {
@@ -118,7 +113,8 @@ void place_step_rows(RowSite& site, int dof, double lead, double largest) {
     });
     if (used <= settings.watched_share) continue;
     const double beyond = step_beyond_rate(site, point, dof, lead) / largest;
-    const double most = settings.limit_share - std::min(beyond, kMostBeyond);
+    const double most =
+        settings.limit_share - std::min(beyond, settings.exported_table.most_beyond);
     site.add(kStepRows, point, dof, JointRow{JointQuantity::speed, dof, 1 / largest, lead}, 1,
              -most, most)
         .active = settings.active;

@@ -77,6 +77,10 @@ struct RowSettings {
     double light = 0;  ///< share of the weight below which the normal force has rows
   } normal_force;
   struct {
+    /// Largest share of a step by which the row of its rate is made stricter because of a kink.
+    double most_beyond = 0;
+  } exported_table;
+  struct {
     double cone_share = 1;  ///< a further factor on the friction that may be used
     /// Tangential force as a share of the weight at which the tip of the cone is rounded.
     double rounding = 0;

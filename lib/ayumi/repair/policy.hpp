@@ -312,6 +312,11 @@ inline constexpr double kEdgeAllowance = 1e-4;
 inline constexpr double kSameDistance = 1e-6;
 }  // namespace clearance
 
+/// Largest share of a step of the table by which the row of its rate is made stricter. Chosen:
+/// kinks of usual motions give less than 0.01; a jump is repaired by its own rows. Test:
+/// FromScratch.JumpsOfATallRobotNeedFewPrograms.
+inline constexpr double kMostBeyond = 0.05;
+
 /// Share of the check's tolerance by which a trusted COG or ZMP may deviate. Chosen. With half of
 /// the value, the change of the case "cog, trusted" changes from 0.0463 to 0.0643; with twice, to
 /// 0.023. Test: Faults.CogKeyMovedAndTrusted and Faults.ZmpMovedAndTrusted (that the check passes).

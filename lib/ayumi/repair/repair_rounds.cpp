@@ -46,8 +46,9 @@ bool is_over(const RepairState& state, const RoundMemory& memory) {
 void choose_windows(RepairState& state, RoundMemory& memory) {
   const std::vector<Finding>& now = state.result.check.findings;
   memory.findings.insert(memory.findings.end(), now.begin(), now.end());
-  if (memory.round > 0)
-    add_error_times(state.result.check, state.series.dt, state.spec.extra_times);
+  for (const Finding& f : now)
+    if (f.severity == Severity::error && memory.round > 0)
+      state.spec.extra_times.insert(state.spec.extra_times.end(), {f.begin, f.at, f.end});
   state.spec.windows = windows_around(memory.findings, memory.pad);
   add_near_pairs(state.model, state.result.series, state.collisions, state.spec.near_pairs);
 }

@@ -37,6 +37,7 @@ RowSettings row_settings(const CorrectionSpec& spec) {
   s.friction = {.cone_share = spec.at_check_limits ? 1 : policy::kFirstBackoff.friction_cone,
                 .rounding = policy::kFrictionRounding,
                 .active = policy::collocation::kActiveFriction};
+  s.exported_table = {.most_beyond = policy::kMostBeyond};
   s.flight = {.own_share = policy::flight::kOwnShare, .band = policy::flight::kBand};
   s.stance = {.angle = spec.sole_angle,
               .share_at_knots = spec.sole_at_knots,

@@ -264,14 +264,10 @@ void append_rows(std::string& text, const Eigen::MatrixXi& counts, const std::ve
   }
 }
 
-int interval_of(double dt) {
-  const double ms = dt * 1000;
-  const int interval = static_cast<int>(std::round(ms));
-  if (interval < 1 || std::abs(ms - interval) > 1e-6)
-    fail(ErrorCode::bad_pattern,
-         "a HOAP sequence needs a whole number of milliseconds between rows, but the table has " +
-             text::brief(ms) + " ms");
-  return interval;
+int interval_of(const RobotModel& model, const SequenceLayout& layout, double dt) {
+  const std::string refusal = refusal_of_interval(model, layout, dt);
+  if (!refusal.empty()) fail(ErrorCode::bad_pattern, refusal);
+  return static_cast<int>(std::round(1000 * dt));
 }
 
 Eigen::MatrixXi counts_of(const RobotModel& model, const ReferenceTrajectory& table,
@@ -379,10 +375,25 @@ ReferenceTrajectory hoap_targets(const RobotModel& model, const HoapFile& sequen
   return table;
 }
 
+std::string refusal_of_interval(const RobotModel& model, const SequenceLayout& layout, double dt) {
+  const double ms = 1000 * dt;
+  const int interval = static_cast<int>(std::round(ms));
+  if (interval < 1 || std::abs(ms - interval) > 1e-6)
+    return "a HOAP sequence needs a whole number of milliseconds between rows, but the table has " +
+           text::brief(ms) + " ms";
+  const std::vector<int>& allowed = layout.intervals_ms;
+  if (allowed.empty() || std::find(allowed.begin(), allowed.end(), interval) != allowed.end())
+    return "";
+  std::vector<std::string> known;
+  for (const int each : allowed) known.push_back(std::to_string(each));
+  return "the table has a row every " + text::brief(ms) + " ms, but the layout '" + layout.name +
+         "' of '" + model.name() + "' allows only " + text::join(known, ", ") + " ms";
+}
+
 std::string hoap_csv(const RobotModel& model, const ReferenceTrajectory& table,
                      const SafetyOptions& options, const SequenceLayout& layout) {
   const std::vector<int> dofs = dofs_by_device(model, layout);
-  const int interval = interval_of(table.dt);
+  const int interval = interval_of(model, layout, table.dt);
   std::string behind;
   for (const std::string& word : layout.after) behind += "," + word;
   std::string text;
@@ -404,7 +415,9 @@ std::string hoap_csv_around(const RobotModel& model, const ReferenceTrajectory& 
   const auto rows = static_cast<Eigen::Index>(table.rows.size());
   if (begin == 0 && end == rows) return bytes;
   const std::vector<int> dofs = dofs_by_device(model, sequence.layout);
-  const std::string before = std::to_string(interval_of(table.dt)) + ",2";
+  SequenceLayout layout = sequence.layout;
+  layout.intervals_ms.clear();  // the rows around the file have its own interval
+  const std::string before = std::to_string(interval_of(model, layout, table.dt)) + ",2";
   const Eigen::MatrixXi counts = counts_of(model, table, options);
   std::string text;
   append_rows(text, counts, dofs, 0, begin, before, sequence.first_words + sequence.line_end);

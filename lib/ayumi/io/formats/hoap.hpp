@@ -75,9 +75,12 @@ Eigen::MatrixXd hoap_readings(const RobotModel& model, const HoapFile& sequence)
 /// robot's joint order; the other fields are zero.
 ReferenceTrajectory hoap_targets(const RobotModel& model, const HoapFile& sequence);
 
+/// Why a sequence of this layout cannot have a row every `dt` [s]; empty if it can.
+std::string refusal_of_interval(const RobotModel& model, const SequenceLayout& layout, double dt);
+
 /// The table as a sequence file, in the layout of written_layout() unless another one is given. The
 /// counts are those of encoder_counts under the step limits of the options. Throws
-/// Error(bad_pattern) if dt is not a whole number of milliseconds or a count does not fit into 16
+/// Error(bad_pattern) for a dt with a refusal_of_interval(), or if a count does not fit into 16
 /// bits.
 std::string hoap_csv(const RobotModel& model, const ReferenceTrajectory& table,
                      const SafetyOptions& options = {});

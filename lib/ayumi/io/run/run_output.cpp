@@ -129,7 +129,7 @@ RunOutput::RunOutput(const fs::path& folder, bool replace)
   if (error)
     fail(ErrorCode::bad_file, {target_.string()},
          "the folder cannot be written (" + error.message() + ")");
-  unfinished_.emplace(staging_);
+  unfinished_.emplace(staging_, UnfinishedPath::Kind::folder);
 }
 
 RunOutput::~RunOutput() {

@@ -151,7 +151,8 @@ std::vector<PushThreshold> read_push_thresholds(const std::filesystem::path& fil
   if (root.at("format").string() != "ayumi.push/1")
     root.at("format").complain("this is not the results file of a push study (ayumi.push/1)");
   if (const std::string wrong = wrong_seal(bytes); !wrong.empty())
-    fail(ErrorCode::bad_file, {file.string()}, wrong + "; run `ayumi push` again with --force");
+    fail(ErrorCode::bad_file, {file.string()},
+         wrong + "; run `ayumi push` again with --force, or move this file away");
   std::vector<std::string> controllers;
   for (const JsonNode& controller : root.at("study").at("controllers").items())
     controllers.push_back(controller.at("type").string());
