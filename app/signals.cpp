@@ -47,18 +47,28 @@ void on_impatience(int) {
   _exit(kStoppedExitCode);
 }
 
+// None of the handlers interrupts another one, because a second removal of files would end the
+// first one half-way.
+void handle(int signal, void (*handler)(int)) {
+  struct sigaction action = {};
+  action.sa_handler = handler;
+  action.sa_flags = SA_RESTART;
+  for (const int other : {SIGALRM, SIGINT, SIGTERM, SIGHUP}) sigaddset(&action.sa_mask, other);
+  sigaction(signal, &action, nullptr);
+}
+
 }  // namespace
 
 void watch_for_signals() {
   sigevent event = {};
   event.sigev_notify = SIGEV_SIGNAL;
   event.sigev_signo = SIGALRM;
-  std::signal(SIGALRM, on_impatience);
+  handle(SIGALRM, on_impatience);
   has_timer = timer_create(CLOCK_MONOTONIC, &event, &impatience) == 0;
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
+  handle(SIGINT, on_signal);
+  handle(SIGTERM, on_signal);
   // A closed terminal stops the work as Ctrl-C does, unless nohup has made the program ignore it.
-  if (std::signal(SIGHUP, SIG_IGN) != SIG_IGN) std::signal(SIGHUP, on_signal);
+  if (std::signal(SIGHUP, SIG_IGN) != SIG_IGN) handle(SIGHUP, on_signal);
   std::signal(SIGXFSZ, SIG_IGN);
 }
 

@@ -420,11 +420,14 @@ TEST(SweepCommand, OneClearLineForBadInput) {
   EXPECT_TRUE(contents(s.folder / "good.db") == good);
   // The same holds for a refused file of another version, which differs in the head of the
   // database.
-  std::string later = good;
-  later.replace(60, 4, std::string("\0\0\0\1", 4));  // this is PRAGMA user_version
-  write(s.folder / "later.db", later);
-  expect(s.run({"sweep", "status", "later.db"}), 3, "the results have version 1 of the format");
-  for (const char* const file : {"good.db", "later.db"})
+  for (const auto& [version, file] : {std::pair('\1', "older.db"), std::pair('\3', "later.db")}) {
+    std::string other = good;
+    other.replace(60, 4, std::string("\0\0\0", 3) + version);  // this is PRAGMA user_version
+    write(s.folder / file, other);
+    expect(s.run({"sweep", "status", file}), 3,
+           std::string("the results have version ") + char('0' + version) + " of the format");
+  }
+  for (const char* const file : {"good.db", "older.db", "later.db"})
     for (const char* const part : {"-wal", "-shm"})
       EXPECT_FALSE(fs::exists(s.folder / (std::string(file) + part))) << file;
 }

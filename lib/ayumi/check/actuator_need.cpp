@@ -13,9 +13,11 @@ namespace ayumi {
 
 namespace {
 
-// A joint that is too fast within this time before a lift-off or after a landing is fast because of
-// the flight [s]. Chosen: the last part of a push; a stoop lasts 0.1 to 0.3 s.
-constexpr double kBesideFlight = 0.1;
+// A joint of a leg that is too fast within this time before a lift-off or after a landing is fast
+// because of the flight [s]. Chosen: the last part of a push; a stoop lasts 0.1 to 0.3 s.
+constexpr double kPartOfPush = 0.1;
+// The same within the flight [s]. Chosen: the legs still have the speed of the push.
+constexpr double kAfterPush = 0.01;
 
 // The error of this kind that is furthest beyond its limit.
 const Finding* worst(const ConsistencyReport& report, FindingKind kind) {
@@ -60,28 +62,53 @@ std::optional<Flight> flight_at(const CommandSeries& series, double at) {
     if (flies && !flight) flight = {t, t};
     if (flies) flight->end = t;
     if (flies && k + 1 < series.samples.size()) continue;
-    if (flight && at > flight->begin - kBesideFlight && at < flight->end + kBesideFlight)
+    const auto is_near_end = [at](double before, double after) {
+      return at > before && at < after;
+    };
+    if (flight && (is_near_end(flight->begin - kPartOfPush, flight->begin + kAfterPush) ||
+                   is_near_end(flight->end - kAfterPush, flight->end + kPartOfPush)))
       return flight;
     flight.reset();
   }
   return {};
 }
 
-// At lift-off and landing the COG has the speed g T / 2, and in one posture the speed of a joint is
-// proportional to that of the COG. So the fastest joint bounds the duration T of the flight, and
-// the robot rises by g T^2 / 8.
-std::string flight_words(const CommandSeries& series, const ConsistencyReport& report) {
-  const Finding* f = worst(report, FindingKind::joint_speed);
-  const std::optional<Flight> flight = f ? flight_at(series, f->at) : std::nullopt;
-  if (!flight) return "";
-  const double lasts = flight->end - flight->begin + series.dt;
-  const double possible = std::abs(f->limit / f->worst) * lasts;
+bool is_in_leg(const RobotModel& model, const std::string& joint) {
+  for (const Side side : {Side::left, Side::right})
+    for (const int dof : model.leg(side))
+      if (model.dofs()[static_cast<size_t>(dof)].name == joint) return true;
+  return false;
+}
+
+// At lift-off and landing the COG has the speed g T / 2, and in one posture the speed of a joint of
+// the legs is proportional to that of the COG. So each of these joints bounds the duration T of the
+// flight, in which the robot rises by g T^2 / 8. The words are about the joint with the least
+// bound.
+std::string flight_words(const RobotModel& model, const CommandSeries& series,
+                         const ConsistencyReport& report) {
+  const Finding* least = nullptr;
+  double possible = 0, lasts = 0;
+  for (const Finding& f : report.findings) {
+    if (f.kind != FindingKind::joint_speed || f.severity != Severity::error ||
+        !is_in_leg(model, f.where))
+      continue;
+    const std::optional<Flight> flight = flight_at(series, f.at);
+    if (!flight) continue;
+    const double duration = flight->end - flight->begin + series.dt;
+    const double bound = std::abs(f.limit / f.worst) * duration;
+    if (least && bound >= possible) continue;
+    least = &f;
+    possible = bound;
+    lasts = duration;
+  }
+  if (!least) return "";
   const auto rise = [](double duration) {
     return text::brief(1e3 * kGravity * duration * duration / 8, 2) + " mm";
   };
-  return f->where + " allows a flight of at most " + text::brief(possible, 2) + " s (a rise of " +
-         rise(possible) + ") with the legs in these postures, but the flight lasts " +
-         text::brief(lasts, 3) + " s (" + rise(lasts) + ")";
+  return least->where + " is too fast for a flight longer than " + text::brief(possible, 2) +
+         " s (a rise of " + rise(possible) +
+         ") with the legs in these postures, and the flight lasts " + text::brief(lasts, 3) +
+         " s (" + rise(lasts) + "); the stoops and other joints may allow less";
 }
 
 ActuatorNeed need_of(const RobotModel& model, const CommandSeries& series,
@@ -103,7 +130,7 @@ ActuatorNeed need_of(const RobotModel& model, const CommandSeries& series,
                    : (need.sufficient.size() > 1 ? "the profiles " : "the profile ") +
                          text::join(need.sufficient, ", ") +
                          (need.sufficient.size() > 1 ? " are strong enough" : " is strong enough"));
-  need.flight = flight_words(series, report);
+  need.flight = flight_words(model, series, report);
   return need;
 }
 

@@ -10,8 +10,8 @@ namespace ayumi {
 struct ActuatorNeed {
   std::string text;                     ///< the need in words; empty if the profile is enough
   std::vector<std::string> sufficient;  ///< other profiles that are enough
-  /// If joints are too fast because of a flight, the longest flight that the fastest of them allows
-  /// in the same postures, in words; else empty.
+  /// If joints of the legs are too fast because of a flight, the longest flight that one of them
+  /// allows in the same postures, in words; else empty.
   std::string flight = {};
 };
 

@@ -243,7 +243,10 @@ class Suspicions {
              std::string("the swing lasts ") + text::brief(lasts) +
                  " s. Times are in seconds; if these times are in ms, divide them by 1000"});
     }
-    if (found.empty() && feet_->duration() > kLongestStand)
+    const std::vector<Phase>& phases = feet_->phases();
+    const bool swings = std::any_of(phases.begin(), phases.end(),
+                                    [](const Phase& phase) { return phase.swing.has_value(); });
+    if (!swings && feet_->duration() > kLongestStand)
       found.push_back(
           {"", "the motion lasts " + text::brief(feet_->duration()) +
                    " s. Times are in seconds; if these times are in ms, divide them by 1000"});
@@ -314,7 +317,7 @@ class Suspicions {
     };
     const Eigen::AlignedBox2d common =
         box_of(foot).translated(place.head<2>()).intersection(box_of(other(foot)));
-    return !common.isEmpty() && std::abs(place.z()) < kLiftedKey;
+    return (common.sizes().array() > 0).all() && std::abs(place.z()) < kLiftedKey;
   }
 
   void crossings() {
@@ -482,7 +485,7 @@ std::vector<Mistake> impossible_values(const RobotModel& model, const Pattern& p
 
 std::optional<Mistake> times_in_ms(const RobotModel& model, const Pattern& pattern,
                                    const CheckOptions& options) {
-  if (pattern.table) return {};
+  if (pattern.table || pattern.correction) return {};  // a motion with a correction was sampled
   std::vector<Mistake> found = Suspicions(model, pattern).long_times();
   if (found.empty()) return {};
   Mistake mistake = std::move(found.front());

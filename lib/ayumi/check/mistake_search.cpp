@@ -59,8 +59,8 @@ constexpr double kLargeChange = 0.05;
 // The size that is given to a change of sign or digit that removes only a part of the errors.
 // Definition: larger than all other changes.
 constexpr double kGuessed = 1e3;
-// Number of smaller hops that are tried if nothing else helps. Chosen: all of them, and twice as
-// many for legs of fewer than six joints, whose trials count more.
+// Largest number of trials of smaller hops if nothing else helps. Chosen: more than all 20 of them,
+// which count twice for legs of fewer than six joints.
 constexpr int kHopTrials = 60;
 // Number of hypotheses of one kind that are tried. Chosen: more than there usually are, except for
 // errors that last for the whole motion.

@@ -21,7 +21,7 @@ namespace {
 
 // Time over which an offset of the COG is reduced to zero [s]. Chosen: five time constants 1/omega
 // of HOAP-1, so the ZMP moves by little more than the offset itself; a shorter blend moves it more.
-// Half or twice the value changes measured cases by 5 % or more (constants.md).
+// Its effect is in constants.md.
 constexpr double kCogBlend = 0.8;
 
 // Time in the air over which a foot returns to its command [s]. Chosen: less than half of a swing

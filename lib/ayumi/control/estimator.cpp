@@ -19,19 +19,18 @@ using Eigen::Vector3d;
 namespace {
 
 // Time constant of the load share of each foot [s]. Chosen with the prototype: three ticks, enough
-// against the noise of the cells and short against a double support of 80 ms. Half or twice the
-// value changes measured cases by 5 % or more (constants.md).
+// against the noise of the cells and short against a double support of 80 ms. Its effect is in
+// constants.md.
 constexpr double kLoadFilterTime = 0.003;
 
 // Share of f_z that makes a foot the stance foot. Chosen: from 40 to 60 % of f_z, the stance foot
 // does not change, so that the stance does not chatter in a double support; with 0.5 there would be
-// no such hysteresis. Half or twice the value changes measured cases by 5 % or more (constants.md).
+// no such hysteresis. Its effect is in constants.md.
 constexpr double kStanceShare = 0.6;
 
 // Share of the weight below which there is no ZMP: (17) loses its meaning near a flight
 // (docs/notation.md). Chosen: half of the smallest force with which a foot counts as standing
-// (control/swing_foot). Half or twice the value changes measured cases by 5 % or more
-// (constants.md).
+// (control/swing_foot). Its effect is in constants.md.
 constexpr double kContactShare = 0.05;
 
 // Tilt about x and y of a sole that lies flat, for each unit of f_z (cop - centre) [rad/(N m)]. The

@@ -32,37 +32,32 @@ namespace {
 // multiples of 1 / omega.
 
 // Share of each support that is kept in reserve. Chosen: the robot differs from the point mass.
-// Half or twice the value changes measured cases by 5 % or more (constants.md).
+// Its effect is in constants.md.
 constexpr double kReserve = 0.2;
 
 // Share of the landing foot's support that is taken into account. Chosen: the ZMP only gets there
-// in the course of the double support. Half or twice the value changes measured cases by 5 % or
-// more (constants.md).
+// in the course of the double support. Its effect is in constants.md.
 constexpr double kNextSupportShare = 0.5;
 
 // Largest distance of a foothold from the foothold of the pattern [z]. Chosen: within the reach of
-// the legs with the COG at the height of a walk. Half or twice the value changes measured cases by
-// 5 % or more (constants.md).
+// the legs with the COG at the height of a walk. Its effect is in constants.md.
 constexpr double kFootholdReach = 0.36;
 
 // Largest speed of a foot's shift [omega z]. Chosen: the swing itself needs the rest of the joint
-// speed of HOAP-1. Half or twice the value changes measured cases by 5 % or more (constants.md).
+// speed of HOAP-1. Its effect is in constants.md.
 constexpr double kFootSpeed = 0.65;
 
 // Smallest error at the landing to which a foothold reacts [z]: 4 mm on HOAP-1. Chosen: the sole
-// absorbs smaller errors. Half or twice the value changes measured cases by 5 % or more
-// (constants.md).
+// absorbs smaller errors. Its effect is in constants.md.
 constexpr double kLeastError = 0.02;
 
 // A foothold is chosen from this time before lift-off on [1/omega]. Chosen: before this time, the
-// present support can still remove the error. Half or twice the value changes measured cases by 5 %
-// or more (constants.md).
+// present support can still remove the error. Its effect is in constants.md.
 constexpr double kLookAhead = 1;
 
 // Cost of moving a foothold by a length, relative to the cost of a remaining error of the same
 // length. Chosen: a larger movement is preferred if it reduces the remaining error by at least a
-// third of the additional distance. Half or twice the value changes measured cases by 5 % or more
-// (constants.md).
+// third of the additional distance. Its effect is in constants.md.
 constexpr double kMoveCost = 0.3;
 
 // Cost of the clock's rate 1 [z]. Chosen: small, so that a faster clock is chosen whenever it
@@ -75,8 +70,8 @@ constexpr double kTimeScaleCost = 0.016;
 constexpr double kTimeScaleStep = 0.1;
 
 // A force on the swing foot before this share of the swing is not a landing. Chosen: a foot that
-// has just left the ground still drags; a tipped robot's foot may land soon after. Half or twice
-// the value changes measured cases by 5 % or more (constants.md).
+// has just left the ground still drags; a tipped robot's foot may land soon after. Its effect is in
+// constants.md.
 constexpr double kSwingLandingAfter = 0.3;
 
 // Longest double support over which the shift of the ZMP counts as a ramp [1/omega]. Chosen: the

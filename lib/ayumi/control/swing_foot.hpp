@@ -13,8 +13,7 @@
 namespace ayumi {
 
 /// Smallest distance between the inner sides of two soles beside each other [m]. Chosen: a few
-/// times the error with which a foot lands, 1.5 mm on HOAP-1. Half or twice the value changes
-/// measured cases by 5 % or more (constants.md).
+/// times the error with which a foot lands, 1.5 mm on HOAP-1. Its effect is in constants.md.
 inline constexpr double kSoleClearance = 0.008;
 
 /// Half the distance between a sole's sides [m].
@@ -55,7 +54,7 @@ class SwingReplan {
  private:
   // A path is never planned for a shorter time than this [s], because jerks grow with 1 / t^3.
   // Chosen: 30 ticks of 1 ms; with half of it, a target that moves in the last ticks requires eight
-  // times the jerk. Half or twice the value changes measured cases by 5 % or more (constants.md).
+  // times the jerk. Its effect is in constants.md.
   static constexpr double kLeastTime = 0.03;
 
   Vector rate_ = Vector::Zero(), acceleration_ = Vector::Zero();

@@ -32,13 +32,11 @@ using Eigen::VectorXd;
 namespace {
 
 // Factor on the rows of a task that is reduced. Chosen: its square, 1e-5, is the damping's share of
-// the trace, so such rows have no more weight than the damping. Half or twice the value changes
-// measured cases by 5 % or more (constants.md).
+// the trace, so such rows have no more weight than the damping. Its effect is in constants.md.
 constexpr double kSoftness = 0.003;
 
 // Largest residual of a task that counts as fulfilled [m/s]: 2 um in each tick of 1 ms. Chosen:
-// with bent knees, the residual that the damping leaves is smaller. Half or twice the value changes
-// measured cases by 5 % or more (constants.md).
+// with bent knees, the residual that the damping leaves is smaller. Its effect is in constants.md.
 constexpr double kDone = 0.002;
 
 // Largest number of solutions of a task. After each of them, the joints that would leave their
@@ -60,7 +58,7 @@ constexpr double kCogAccelerationLimit = 4;
 // A tilted foot counts as lying on the ground, and not as tipping over an edge, if its centre of
 // pressure is farther than this from the nearest edge of the sole, as a share of the largest
 // possible distance. Chosen: 5 mm on HOAP-1, twice the noise of its load cells; docs/theory.md, "A
-// foot on a bump". Half or twice the value changes measured cases by 5 % or more (constants.md).
+// foot on a bump". Its effect is in constants.md.
 constexpr double kInsideSole = 0.15;
 
 // Time constant of the low pass of the tilt that the ankles compensate [s]. Chosen: stiff servos

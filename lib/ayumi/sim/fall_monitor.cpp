@@ -21,14 +21,14 @@ namespace {
 
 /// Tilt of the trunk against the ground's normal beyond which the robot has fallen [rad]. Chosen:
 /// 46 deg is beyond the postures of the bundled patterns and long before the trunk touches the
-/// ground. Half or twice the value changes measured cases by 5 % or more (constants.md).
+/// ground. Its effect is in constants.md.
 constexpr double kFallTilt = 0.8;
 /// Cosine of a tilt above which the robot certainly has not fallen, so that the angle need not be
 /// computed. Definition: above the cosine of kFallTilt, 0.697.
 constexpr double kSurelyUpright = 0.75;
 /// Fraction of the commanded COG height below which the robot has fallen. Chosen: lower than a
-/// robot with bent knees under its load, higher than one that sits or lies. Half or twice the value
-/// changes measured cases by 5 % or more (constants.md).
+/// robot with bent knees under its load, higher than one that sits or lies. Its effect is in
+/// constants.md.
 constexpr double kFallHeight = 0.6;
 /// Tilt of the trunk below which a robot stands at the end [rad]. Chosen: a quarter of kFallTilt.
 /// No measured case changes between half and twice the value (constants.md).
@@ -53,10 +53,10 @@ constexpr double kRestTime = 0.5;
 /// slower than the rocking of a robot on soft soles. Slower motions are judged by the COG.
 constexpr double kSlowestRocking = 3;
 /// Time off the ground after which the robot is in flight [s]. Chosen: a shorter one is a rebound.
-/// Half or twice the value changes measured cases by 5 % or more (constants.md).
+/// Its effect is in constants.md.
 constexpr double kMinFlight = 0.04;
 /// Time off the ground after which the next contact of a foot is a touchdown [s]. Chosen: a shorter
-/// one is a rebound. Half or twice the value changes measured cases by 5 % or more (constants.md).
+/// one is a rebound. Its effect is in constants.md.
 constexpr double kMinFootFlight = 0.03;
 /// Number of events for which memory is reserved, so that a tick allocates nothing in a usual run.
 constexpr size_t kReservedEvents = 64;

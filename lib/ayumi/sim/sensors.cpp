@@ -14,8 +14,8 @@ using Eigen::Vector3d;
 namespace {
 
 /// Square root of the number of readings that the IMU averages at rest before the start. Chosen:
-/// 400 readings are 0.4 s, for which the robot holds its first posture. Half or twice the value
-/// changes measured cases by 5 % or more (constants.md).
+/// 400 readings are 0.4 s, for which the robot holds its first posture. Its effect is in
+/// constants.md.
 constexpr double kRestRoot = 20;
 
 }  // namespace

@@ -30,8 +30,8 @@ class TiltEstimate {
 };
 
 /// Time constant with which gravity corrects the attitude [s]. Chosen: several steps of a walk,
-/// whose accelerations have no mean, and short against the drift of a gyro. Half or twice the value
-/// changes measured cases by 5 % or more (constants.md).
+/// whose accelerations have no mean, and short against the drift of a gyro. Its effect is in
+/// constants.md.
 constexpr double kTiltTime = 5.0;
 
 }  // namespace ayumi

@@ -94,7 +94,9 @@ void refuse_times_in_ms(const Pattern& pattern, const RobotModel& robot, const s
   options.threads = threads;
   const std::optional<Mistake> mistake = times_in_ms(robot, pattern, options);
   if (!mistake) return;
-  if (mistake->explains_all && !mistake->place.empty()) {
+  const bool swings = !mistake->place.empty();
+  if (swings && !mistake->explains_all) return;  // a slow swing, or another mistake beside this one
+  if (swings) {
     SourcePlace place = in_file(pattern, mistake->place);
     place.names_value = place.names_remedy = true;
     fail(ErrorCode::bad_pattern, place, mistake->words);

@@ -440,10 +440,9 @@ void smaller_hops(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
       const auto rise_to = [&](size_t end, size_t low) {
         return *of.pattern.keyframes[end].cog_height - by - *of.pattern.keyframes[low].cog_height;
       };
-      const bool possible =
-          shorter > 0 && std::all_of(flights.begin(), flights.end(), [&](const Flight& f) {
-            return std::min(rise_to(f.off, f.before), rise_to(f.land, f.after)) > kLeastRise * leg;
-          });
+      const bool possible = std::all_of(flights.begin(), flights.end(), [&](const Flight& f) {
+        return std::min(rise_to(f.off, f.before), rise_to(f.land, f.after)) > kLeastRise * leg;
+      });
       if (!possible) continue;
       // The longest push from the stoop, and the longest landing into it [s].
       // The change outlives this loop, so it has its own copy of the speed.
@@ -481,8 +480,7 @@ void smaller_hops(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
                p.keyframes[f->after].t = f->begin + now + push(rise(f->land, f->after));
              }
            },
-           1 - share + by});
-      made.back().only_if_enough = true;
+           1 - share + lower});
     }
   }
 }

@@ -51,8 +51,8 @@ constexpr double kOffsetLimit = 0.09;
 constexpr double kContradiction = 0.004;
 
 // Time after which the tilt of a foot that lies on the ground counts as a slope of the ground, in
-// 1/omega: 50 ms on HOAP-1. Chosen: docs/theory.md, "A foot on a bump". Half or twice the value
-// changes measured cases by 5 % or more (constants.md).
+// 1/omega: 50 ms on HOAP-1. Chosen: docs/theory.md, "A foot on a bump". Its effect is in
+// constants.md.
 constexpr double kContactTiltTime = 0.33;
 
 using GainFields = std::map<std::string, double*>;

@@ -49,18 +49,16 @@ constexpr double kLeastTimeToLanding = 0.06;
 constexpr double kShiftDone = 0.027;
 
 // Smallest duration of the weight shift, as a multiple of 1/omega: 0.36 s on HOAP-1. Chosen with
-// the prototype: the regulator settles within this time. Half or twice the value changes measured
-// cases by 5 % or more (constants.md).
+// the prototype: the regulator settles within this time. Its effect is in constants.md.
 constexpr double kShiftTime = 2.4;
 
 // Time that is reserved for standing after timed steps, as a multiple of 1/omega. Chosen: exp(-5)
-// of an error is left. Half or twice the value changes measured cases by 5 % or more
-// (constants.md).
+// of an error is left. Its effect is in constants.md.
 constexpr double kSettleTime = 5;
 
 // A force on the swing foot before this share of the swing is not a landing. Chosen with the
 // prototype: a foot still drags after its lift-off, and a landing is early by at most a third of a
-// swing. Half or twice the value changes measured cases by 5 % or more (constants.md).
+// swing. Its effect is in constants.md.
 constexpr double kStepLandingAfter = 0.6;
 
 // Largest factor by which a step may be speeded up so that it lands earlier, relative to its
@@ -80,8 +78,8 @@ constexpr double kBiasShare = 0.5;
 constexpr double kLandingBiasLimit = 0.015;
 
 // Time after which a lasting tilt of the stance foot counts as a slope of the ground, as a multiple
-// of 1/omega: 1 s on HOAP-1. Chosen: equal to the offset time of DTAD. Half or twice the value
-// changes measured cases by 5 % or more (constants.md).
+// of 1/omega: 1 s on HOAP-1. Chosen: equal to the offset time of DTAD. Its effect is in
+// constants.md.
 constexpr double kSlopeTime = 6.6;
 
 // Time constant of the low pass of the vertical push that the load cells measure [s]; the lag of

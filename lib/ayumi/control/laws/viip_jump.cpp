@@ -57,8 +57,7 @@ constexpr double kStoopReached = 0.01;
 constexpr double kStoopLean = 1.2;
 
 // sqrt(K_Pz / m) after the landing, as a multiple of omega. Chosen: the COG is back at ref z_G
-// within the 0.6 s that the acceptance test requires. Half or twice the value changes measured
-// cases by 5 % or more (constants.md).
+// within the 0.6 s that the acceptance test requires. Its effect is in constants.md.
 constexpr double kSettleRate = 2.2;
 
 // Ground force that counts as zero [N], and the time for which it must last [s]. Measured with the
@@ -73,8 +72,7 @@ constexpr double kNoForceTime = 0.015;
 constexpr double kTargetRate = 3;
 
 // Time over which the torque feedforward is faded in and out [s]. Chosen: within the stoop, and
-// long against the lag of servos, up to 20 ms. Half or twice the value changes measured cases by 5
-// % or more (constants.md).
+// long against the lag of servos, up to 20 ms. Its effect is in constants.md.
 constexpr double kTorqueFadeTime = 0.3;
 
 // Time constant with which the motion of the legs decays after release [s]. Source:
@@ -94,8 +92,7 @@ constexpr double kRetractionHold = 0.010;
 constexpr double kRetractionShare = 0.9;
 
 // Longest retraction as a share of the flight. Chosen: the legs then have the middle of the flight
-// to swing to their landing places. Half or twice the value changes measured cases by 5 % or more
-// (constants.md).
+// to swing to their landing places. Its effect is in constants.md.
 constexpr double kRetractionFlightShare = 0.4;
 
 // Time after release in which forces do not yet mean a touchdown [s]. Chosen with the prototype:
@@ -109,7 +106,7 @@ constexpr double kTouchdownBlindTime = 0.040;
 constexpr double kTouchdownShare = 0.1;
 // No measured case changes between half and twice the value (constants.md).
 constexpr double kTouchdownTime = 0.003;
-// Half or twice the value changes measured cases by 5 % or more (constants.md).
+// Its effect is in constants.md.
 constexpr double kHardTouchdownShare = 0.4;
 
 // A flight that is longer than planned by this ends as if the feet had touched down [s]. Chosen:
@@ -120,13 +117,13 @@ constexpr double kLateTouchdown = 0.15;
 // Correction of the feet in flight [1/s], pull towards the held posture [1/s], damping of the
 // flight's solve (times trace / rows) and the length that makes its angular rows comparable with
 // linear ones [m]. Chosen as in control/whole_body; the feet only have the 0.1 s of the flight.
-// Half or twice the value changes measured cases by 5 % or more (constants.md).
+// Its effect is in constants.md.
 constexpr double kFlightFootRate = 40;
 // Between half and twice the value, figures change by less than 5 %.
 constexpr double kFlightPostureRate = 2;
-// Half or twice the value changes measured cases by 5 % or more (constants.md).
+// Its effect is in constants.md.
 constexpr double kFlightDamping = 1e-5;
-// Half or twice the value changes measured cases by 5 % or more (constants.md).
+// Its effect is in constants.md.
 constexpr double kFlightLength = 0.2;
 
 double smooth_rise(double x) {

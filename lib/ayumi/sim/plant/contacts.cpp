@@ -22,7 +22,7 @@ namespace {
 
 /// A gap that may close within a step [m]. It bounds the work of the solver, but no force: a
 /// contact that stays open gets the impulse 0. Chosen: 50 times the free fall within three steps of
-/// 1 ms. Half or twice the value changes measured cases by 5 % or more (constants.md).
+/// 1 ms. Its effect is in constants.md.
 constexpr double kContactMargin = 1e-3;
 
 /// Tilt below which a circle has no lowest point [rad]. Chosen: on a rim of 0.1 m, a tilt of 1 mrad
