@@ -239,7 +239,7 @@ KNOWN = [
             r"^/units.*\"angle\": \"rad\""),
     Mistake("a leg joint with a key", "walk", leg_joint, r"^/keyframes/3.*joint of a leg"),
     Mistake("a foot key 30 mm up, without a COG height", "kick", foot_up,
-            r"(?s)^/keyframes/\d+: the right foot is \d+ mm up, and the COG rises|"
+            r"(?s)^/keyframes/\d+: the right foot is \d+ mm up( \(and up in [^)]*\))?, and the COG rises|"
             r"^/defaults/cog_height.*nearly straight"),
     Mistake("knees nearly straight at lift-off", "jump", straight_knees,
             r"^/keyframes/[23]: the COG height is 0.262 m", ("hoap1",)),
@@ -262,7 +262,7 @@ KNOWN = [
             r"^/phases/3: the robot stands on the right foot.*ZMP under the left|"
             r"^/keyframes/\d+.*wrong foot"),
     Mistake("payload of 3 kg", "wave", payload(3), r"^/scenario/0.*payload.*3 kg"),
-    Mistake("a foothold in mm", "walk", foothold_in_mm, r"^/phases/3.* mm"),
+    Mistake("a foothold in mm", "walk", foothold_in_mm, r"^/phases/3.*( mm|Check the unit)"),
     Mistake("ground of friction 0.02", "walk", friction(0.02), r"^/world/friction.*0.02"),
     Mistake("trunk 80 degrees ahead", "bow", tilt(80), r"^/keyframes/\d.*trunk is 80 deg"),
     Mistake("a squat too deep", "squat", deep_squat, r"^/keyframes/\d.*COG height is"),
