@@ -29,9 +29,11 @@ void add_push_times(Command& command, std::vector<double>& times) {
   command
       .add_option(
           "--times", times,
-          "Times of the pushes [s] (default: for a walk, one while the robot stands and four "
-          "in one step; for steps of VIIP, three in one step; without steps, one while the "
-          "robot stands and one in the middle of the motion).")
+          "Times of the pushes [s] (default: chosen from the pattern). By default, a walk is "
+          "pushed "
+          "once while the robot stands and four times during one step. Steps of VIIP are pushed "
+          "three times during one step. A motion without steps is pushed once while the robot "
+          "stands and once in the middle.")
       ->type_name("T")
       ->delimiter(',');
 }

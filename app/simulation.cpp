@@ -20,9 +20,10 @@ void add_simulation_options(Command& command, SimulationChoice& choice) {
   command
       .add_option(
           "--controller", choice.controller,
-          "Controller: none (open loop), dtad or viip. For a comparison, choose preview, "
-          "foot-guided or dcm-step. For a demonstration, choose dtad-literal, viip-landings "
-          "or viip-nofeedback (default: the controller of the pattern).")
+          "Controller (default: the controller of the pattern). The controllers of Ayumi are dtad "
+          "and viip; none is the open loop. The controllers preview, foot-guided and dcm-step "
+          "are other laws, for a comparison. The controllers dtad-literal, viip-landings and "
+          "viip-nofeedback only demonstrate what parts of the laws do.")
       ->type_name("NAME");
   command
       .add_option("--scenario", choice.scenario,

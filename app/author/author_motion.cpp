@@ -253,13 +253,8 @@ OrderedJson joints_json(const RobotModel& model) {
     // The slider in the page needs two ends: a joint without limits gets one turn, or a metre each
     // way if it slides.
     const double free = dof.prismatic ? 1.0 : M_PI;
-    const int index = static_cast<int>(joints.size());
-    const auto moves = [&](Side side) {
-      const std::vector<int>& leg = model.leg(side);
-      return model.has_soles() && std::find(leg.begin(), leg.end(), index) != leg.end();
-    };
     joints.push_back({{"name", dof.name},
-                      {"leg", moves(Side::left) || moves(Side::right)},
+                      {"leg", model.is_leg_joint(static_cast<int>(joints.size()))},
                       {"low", std::isfinite(dof.lower) ? dof.lower : -free},
                       {"high", std::isfinite(dof.upper) ? dof.upper : free},
                       {"prismatic", dof.prismatic}});

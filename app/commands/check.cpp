@@ -432,8 +432,8 @@ void add_check(Command& app, Context& context) {
                     "List all kinds of findings with their tolerances.");
   command->add_flag(
       "--all", options.all,
-      "Print every finding, and everything else in full. Without this option, each cause has one "
-      "entry, and the answer fits on a screen.");
+      "Print all findings and all other parts of the answer in full. Without this option, the "
+      "answer has one entry for each cause and fits on a screen.");
   command
       ->add_option("--plot", options.plot, "Draw the joints against their limits (.svg or .png).")
       ->type_name("F");

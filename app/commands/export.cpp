@@ -809,8 +809,9 @@ void add_export(Command& app, Context& context) {
                     "each motion. The picture shows the direction in which the joint has to move.");
   command
       ->add_option("--ramp", options->ramp,
-                   "Shortest duration of the approach ramp before the motion [s] (default: 2; 0 "
-                   "for an imported sequence whose motion is unchanged).")
+                   "Shortest duration of the ramp before the motion [s] (default: 2, or 0 if the "
+                   "pattern is an imported sequence whose motion is unchanged). On the ramp, the "
+                   "robot moves from its home posture to the first posture of the motion.")
       ->check(number_within(SafetyOptions::kRest));
   command
       ->add_option("--hold", options->hold,

@@ -367,9 +367,9 @@ void add_sweep(Command& app, Context& context) {
   for_slurm(
       command
           ->add_option("--chunk", slurm.chunk,
-                       "Number of cases in a task (default: Ayumi runs a few cases first, the "
-                       "pilot run, and chooses the number so that a task takes "
-                       "--task-seconds).")
+                       "Number of cases in a task (default: chosen so that a task takes "
+                       "--task-seconds). For this choice, Ayumi first measures how long a few "
+                       "cases take.")
           ->check(whole_number_within(1, 1000000).description("")),
       "N");
   for_slurm(

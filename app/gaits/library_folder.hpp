@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "ayumi/base/file.hpp"
+#include "ayumi/base/file_lock.hpp"
 
 namespace ayumi::app {
 

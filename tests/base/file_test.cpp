@@ -8,6 +8,7 @@
 
 #include <optional>
 
+#include "ayumi/base/file_lock.hpp"
 #include "tests/support/error_message.hpp"
 #include "tests/support/temporary_folder.hpp"
 

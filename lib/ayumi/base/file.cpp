@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "ayumi/base/error.hpp"
-#include "ayumi/base/file_lock.hpp"
 #include "ayumi/base/regular_file.hpp"
+#include "ayumi/base/unfinished_files.hpp"
 
 namespace ayumi {
 
@@ -168,24 +168,6 @@ void write_file(const fs::path& path, const std::string& bytes) {
       fail(ErrorCode::bad_file, {path.string()},
            std::string("the file cannot be written (") + std::strerror(errno) + ")");
   });
-}
-
-FolderLock::FolderLock(const fs::path& folder) {
-  const LockedFolder locked = lock_folder(
-      folder, folder.string(),
-      "another run is being written to this folder; wait until it has ended, or choose another "
-      "folder");
-  folder_ = locked.folder;
-  file_ = locked.file;
-  made_ = locked.made;
-  descriptor_ = locked.descriptor;
-  unfinished_.emplace(file_, UnfinishedPath::Kind::file, made_);
-}
-
-// A copy of the paths would need memory, of which nothing may be left.
-FolderLock::~FolderLock() {
-  unfinished_.reset();  // before another process can take the lock
-  unlock_folder({std::move(folder_), std::move(file_), made_, descriptor_});
 }
 
 }  // namespace ayumi

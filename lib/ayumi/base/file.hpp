@@ -3,10 +3,7 @@
 
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <string>
-
-#include "ayumi/base/unfinished_files.hpp"
 
 namespace ayumi {
 
@@ -33,25 +30,5 @@ void write_file(const std::filesystem::path& path, const std::string& bytes);
 /// if `produce` throws.
 void write_file_with(const std::filesystem::path& path,
                      const std::function<void(const std::filesystem::path&)>& produce);
-
-/// Makes a folder if necessary and locks it against every other FolderLock on it, in this and in
-/// other processes. The operating system ends the lock with the process, however the process ends;
-/// only the hidden file `.ayumi_lock` may then stay behind, which the next lock takes over. The
-/// destructor removes that file; it also removes the folder, and the folders around it, if this
-/// lock has made them and they are empty.
-class FolderLock {
- public:
-  /// Throws Error(bad_file) with the folder if it cannot be made, or if another process holds it.
-  explicit FolderLock(const std::filesystem::path& folder);
-  ~FolderLock();
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-
- private:
-  std::filesystem::path folder_, file_;
-  int made_ = 0;  // number of folders that the lock has made
-  int descriptor_ = -1;
-  std::optional<UnfinishedPath> unfinished_;
-};
 
 }  // namespace ayumi

@@ -65,6 +65,7 @@ LockedFolder lock_folder(const fs::path& folder, const std::string& name, const 
     }
     if (is_file_of(descriptor, locked.file)) {
       locked.descriptor = descriptor;
+      locked.unfinished.emplace(locked.file, UnfinishedPath::Kind::file, locked.made);
       return locked;
     }
     ::close(descriptor);
@@ -75,7 +76,8 @@ LockedFolder lock_folder(const fs::path& folder, const std::string& name, const 
   return locked;
 }
 
-void unlock_folder(const LockedFolder& locked) {
+void unlock_folder(LockedFolder& locked) {
+  locked.unfinished.reset();  // before another process can take the lock
   ::unlink(locked.file.c_str());
   ::close(locked.descriptor);
   // Destructors call this when no memory is left, so it allocates nothing.
@@ -88,15 +90,18 @@ void unlock_folder(const LockedFolder& locked) {
   }
 }
 
+FolderLock::FolderLock(const fs::path& folder)
+    : locked_(lock_folder(folder, folder.string(),
+                          "another run is being written to this folder; wait until it has ended, "
+                          "or choose another folder")) {}
+
+FolderLock::~FolderLock() { unlock_folder(locked_); }
+
 FileLock::FileLock(const fs::path& file)
     : locked_(lock_folder(file.string() + ".lock", file.string(),
                           "another command is writing to this file; wait until it has ended, or "
-                          "choose another name")),
-      unfinished_(locked_.file, UnfinishedPath::Kind::file, locked_.made) {}
+                          "choose another name")) {}
 
-FileLock::~FileLock() {
-  unfinished_.release();  // before another process can take the lock
-  unlock_folder(locked_);
-}
+FileLock::~FileLock() { unlock_folder(locked_); }
 
 }  // namespace ayumi

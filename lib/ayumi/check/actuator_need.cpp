@@ -48,36 +48,16 @@ std::vector<std::string> missing(const RobotModel& model, const ConsistencyRepor
   return parts;
 }
 
-/// A time without contact [s].
-struct Flight {
-  double begin = 0, end = 0;
-};
-
 // The flight that makes a joint fast at this time, if there is one.
-std::optional<Flight> flight_at(const CommandSeries& series, double at) {
-  std::optional<Flight> flight;
-  for (size_t k = 0; k < series.samples.size(); ++k) {
-    const double t = static_cast<double>(k) * series.dt;
-    const bool flies = series.samples[k].support == Support::none;
-    if (flies && !flight) flight = {t, t};
-    if (flies) flight->end = t;
-    if (flies && k + 1 < series.samples.size()) continue;
-    const auto is_near_end = [at](double before, double after) {
-      return at > before && at < after;
-    };
-    if (flight && (is_near_end(flight->begin - kPartOfPush, flight->begin + kAfterPush) ||
-                   is_near_end(flight->end - kAfterPush, flight->end + kPartOfPush)))
+std::optional<CommandSeries::Flight> flight_at(const CommandSeries& series, double at) {
+  for (const CommandSeries::Flight& flight : series.flights()) {
+    const double begin = static_cast<double>(flight.first) * series.dt,
+                 end = static_cast<double>(flight.last) * series.dt;
+    if ((at > begin - kPartOfPush && at < begin + kAfterPush) ||
+        (at > end - kAfterPush && at < end + kPartOfPush))
       return flight;
-    flight.reset();
   }
   return {};
-}
-
-bool is_in_leg(const RobotModel& model, const std::string& joint) {
-  for (const Side side : {Side::left, Side::right})
-    for (const int dof : model.leg(side))
-      if (model.dofs()[static_cast<size_t>(dof)].name == joint) return true;
-  return false;
 }
 
 // At lift-off and landing the COG has the speed g T / 2, and in one posture the speed of a joint of
@@ -90,11 +70,11 @@ std::string flight_words(const RobotModel& model, const CommandSeries& series,
   double possible = 0, lasts = 0;
   for (const Finding& f : report.findings) {
     if (f.kind != FindingKind::joint_speed || f.severity != Severity::error ||
-        !is_in_leg(model, f.where))
+        !model.is_leg_joint(dof_of(f)))
       continue;
-    const std::optional<Flight> flight = flight_at(series, f.at);
+    const std::optional<CommandSeries::Flight> flight = flight_at(series, f.at);
     if (!flight) continue;
-    const double duration = flight->end - flight->begin + series.dt;
+    const double duration = static_cast<double>(flight->last + 1 - flight->first) * series.dt;
     const double bound = std::abs(f.limit / f.worst) * duration;
     if (least && bound >= possible) continue;
     least = &f;

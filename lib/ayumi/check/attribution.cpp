@@ -262,10 +262,6 @@ constexpr double kArmFactor = 2;
 // Chosen: a tenth. No measured case changes between half and twice the value (constants.md).
 constexpr double kBackShare = 0.1;
 
-bool is_leg_joint(const RobotModel& model, int dof) {
-  return in_leg(model, Side::left, dof) || in_leg(model, Side::right, dof);
-}
-
 bool same_item(const Scene& scene, int i, int j) { return scene.of(i).item == scene.of(j).item; }
 
 bool is_jump(const Scene& scene, int j, int sample) {
@@ -320,7 +316,7 @@ const Condition kLargerOfOneFoot = {
 
 const Condition kJointOfLeg = {"the joint belongs to a leg",
                                [](Scene& scene, int i, int, const Interval&) {
-                                 return is_leg_joint(scene.motion.model, scene.of(i).item);
+                                 return scene.motion.model.is_leg_joint(scene.of(i).item);
                                }};
 
 const Condition kTouchesByAngle = {
@@ -362,7 +358,7 @@ const Condition kJumpThereAndBack = {
       if (!is_jump(scene, j, w.first) && !is_jump(scene, j, w.last + 1)) return false;
       return comes_back(scene.motion, v.item, interval) ||
              (stands_before_and_after(scene, w) &&
-              in_leg(scene.motion.model, static_cast<Side>(scene.of(i).item), v.item));
+              scene.motion.model.in_leg(static_cast<Side>(scene.of(i).item), v.item));
     }};
 
 const Condition kHeldJoint = {
@@ -435,7 +431,7 @@ const Condition kSlowerPace = {"both the cause and the effect come from the spee
 
 const Condition kTorqueOfLeg = {"the joint belongs to a leg",
                                 [](Scene& scene, int, int j, const Interval&) {
-                                  return is_leg_joint(scene.motion.model, scene.of(j).item);
+                                  return scene.motion.model.is_leg_joint(scene.of(j).item);
                                 }};
 
 const Condition kHeldByFriction = {

@@ -28,11 +28,6 @@ bool touches_by_limits(const JudgedMotion& motion, const Violation& v) {
   return motion.collisions.clearance(motion.collisions.pairs()[v.item], data, kTouch) >= 0;
 }
 
-bool in_leg(const RobotModel& model, Side side, int dof) {
-  const std::vector<int>& leg = model.leg(side);
-  return std::find(leg.begin(), leg.end(), dof) != leg.end();
-}
-
 bool sets_distance(const JudgedMotion& motion, const Violation& v, int dof) {
   const auto beyond = [&](int body) {
     while (body > 0 && motion.model.bodies()[body].dof != dof)
@@ -46,8 +41,7 @@ bool sets_distance(const JudgedMotion& motion, const Violation& v, int dof) {
 bool hangs_on(const JudgedMotion& motion, const Violation& v, int dof) {
   const CollisionModel::Pair& pair = motion.collisions.pairs()[v.item];
   const int trunk = motion.model.trunk_body();
-  const bool leg = in_leg(motion.model, Side::left, dof) || in_leg(motion.model, Side::right, dof);
-  if (!leg && (pair.a == trunk || pair.b == trunk)) return false;
+  if (!motion.model.is_leg_joint(dof) && (pair.a == trunk || pair.b == trunk)) return false;
   return sets_distance(motion, v, dof);
 }
 

@@ -10,8 +10,6 @@ namespace ayumi {
 /// its limits.
 bool touches_by_limits(const JudgedMotion& motion, const Violation& collision);
 
-bool in_leg(const RobotModel& model, Side side, int dof);
-
 /// Whether the distance of the bodies depends on this joint.
 bool sets_distance(const JudgedMotion& motion, const Violation& collision, int dof);
 

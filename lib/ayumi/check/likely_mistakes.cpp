@@ -14,6 +14,7 @@
 #include "ayumi/base/json_pointer.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/consistency.hpp"
+#include "ayumi/check/hypotheses/unit_hypotheses.hpp"
 #include "ayumi/check/mistake_search.hpp"
 #include "ayumi/check/raised_feet.hpp"
 #include "ayumi/motion/pattern_context.hpp"
@@ -490,8 +491,7 @@ std::optional<Mistake> times_in_ms(const RobotModel& model, const Pattern& patte
   if (found.empty()) return {};
   Mistake mistake = std::move(found.front());
   Pattern meant = pattern;
-  for (Phase& phase : meant.phases) phase.until *= kMillisecond;
-  for (Keyframe& key : meant.keyframes) key.t *= kMillisecond;
+  hypotheses::scale_times(meant, kMillisecond);
   try {
     const CommandSeries series =
         sample(model, meant, {.dt = model.description().servo_period, .threads = options.threads});

@@ -371,6 +371,15 @@ const std::vector<int>& RobotModel::leg(Side side) const {
   return legs_[static_cast<int>(side)];
 }
 
+bool RobotModel::in_leg(Side side, int dof) const {
+  const std::vector<int>& dofs = leg(side);
+  return std::find(dofs.begin(), dofs.end(), dof) != dofs.end();
+}
+
+bool RobotModel::is_leg_joint(int dof) const {
+  return has_soles() && (in_leg(Side::left, dof) || in_leg(Side::right, dof));
+}
+
 const ActuatorLimits& RobotModel::limits(const std::string& profile) const {
   if (profile.empty()) return limits_.front();
   for (const ActuatorLimits& limits : limits_)

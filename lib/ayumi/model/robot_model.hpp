@@ -111,6 +111,9 @@ class RobotModel {
   const Sole& sole(Side side) const;  ///< throws Error(bad_model) if the robot has no soles
   /// The dofs between the root and this foot, from the root outwards.
   const std::vector<int>& leg(Side side) const;
+  bool in_leg(Side side, int dof) const;
+  /// Whether the dof belongs to a leg; false if the robot has no soles.
+  bool is_leg_joint(int dof) const;
   int trunk_body() const { return trunk_body_; }
 
   /// Actuator limits by profile name; "" is the default profile. Throws Error(bad_model) that names

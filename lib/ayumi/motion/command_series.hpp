@@ -58,6 +58,22 @@ struct CommandSeries {
   /// computed from the samples.
   std::optional<ReferenceTrajectory> kept = {};
 
+  /// First and last sample of a flight, in which no foot is planned on the ground.
+  struct Flight {
+    long first = 0, last = 0;
+  };
+  /// All flights, in time order.
+  std::vector<Flight> flights() const {
+    std::vector<Flight> found;
+    for (size_t i = 0; i < samples.size(); ++i) {
+      const auto k = static_cast<long>(i);
+      if (samples[i].support != Support::none) continue;
+      if (found.empty() || found.back().last + 1 < k) found.push_back({k, k});
+      found.back().last = k;
+    }
+    return found;
+  }
+
   /// The W of sample k; null if it is the robot's own.
   const Eigen::VectorXd* joint_weight_at(long k) const {
     const Eigen::VectorXd* weight = nullptr;

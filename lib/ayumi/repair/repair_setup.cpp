@@ -53,12 +53,8 @@ std::vector<double> kept_times(const std::vector<TimeWindow>& windows,
 // The duration of the shortest flight [s]; unbounded for a motion without a flight.
 double shortest_flight(const CommandSeries& series) {
   double shortest = kNoBound;
-  size_t first = 0;
-  for (size_t k = 0; k <= series.samples.size(); ++k) {
-    if (k < series.samples.size() && series.samples[k].support == Support::none) continue;
-    if (k > first) shortest = std::min(shortest, static_cast<double>(k - first) * series.dt);
-    first = k + 1;
-  }
+  for (const CommandSeries::Flight& flight : series.flights())
+    shortest = std::min(shortest, static_cast<double>(flight.last + 1 - flight.first) * series.dt);
   return shortest;
 }
 

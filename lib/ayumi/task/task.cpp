@@ -82,17 +82,23 @@ void refuse_unknown_gains(const Pattern& pattern, const RobotModel& robot) {
   });
 }
 
-// A motion whose times are in ms would be sampled for a minute before anything is said about it. No
-// robot swings a foot for so long, so such a pattern is refused if it is consistent with times in
-// ms. A motion without swings may be meant to last long; then this only reports the doubt.
-void refuse_times_in_ms(const Pattern& pattern, const RobotModel& robot, const std::string& profile,
-                        const Progress& progress, int threads) {
+CheckOptions options_of(const Pattern& pattern, const std::string& profile, int threads) {
   CheckOptions options;
   options.profile = profile;
   options.friction = pattern.world.friction;
   options.tolerances = pattern.tolerances;
   options.threads = threads;
-  const std::optional<Mistake> mistake = times_in_ms(robot, pattern, options);
+  options.degrees = pattern.degrees;
+  return options;
+}
+
+// A motion whose times are in ms would be sampled for a minute before anything is said about it. No
+// robot swings a foot for so long, so such a pattern is refused if it is consistent with times in
+// ms. A motion without swings may be meant to last long; then this only reports the doubt.
+void refuse_times_in_ms(const Pattern& pattern, const RobotModel& robot, const std::string& profile,
+                        const Progress& progress, int threads) {
+  const std::optional<Mistake> mistake =
+      times_in_ms(robot, pattern, options_of(pattern, profile, threads));
   if (!mistake) return;
   const bool swings = !mistake->place.empty();
   if (swings && !mistake->explains_all) return;  // a slow swing, or another mistake beside this one
@@ -140,13 +146,7 @@ Task make_task(Pattern pattern, RobotModel robot, const std::string& profile,
 }
 
 CheckOptions check_options(const Task& task) {
-  CheckOptions options;
-  options.profile = task.profile;
-  options.friction = task.pattern.world.friction;
-  options.tolerances = task.pattern.tolerances;
-  options.threads = task.threads;
-  options.degrees = task.pattern.degrees;
-  return options;
+  return options_of(task.pattern, task.profile, task.threads);
 }
 
 SimulateOptions simulate_options(const Task& task) {

@@ -21,15 +21,6 @@ bool has_foot_key(const ExaminedPattern& of, Side side, double begin, double end
                      });
 }
 
-bool is_leg_joint(const ExaminedPattern& of, const std::string& joint) {
-  const int dof = of.model.find_dof(joint);
-  for (const Side side : {Side::left, Side::right}) {
-    const std::vector<int>& leg = of.model.leg(side);
-    if (dof >= 0 && std::find(leg.begin(), leg.end(), dof) != leg.end()) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 void swings(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
@@ -95,7 +86,7 @@ void leg_keys(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
   if (!of.model.has_soles()) return;
   for (size_t i = 0; i < of.pattern.keyframes.size(); ++i)
     for (const auto& entry : of.pattern.keyframes[i].joints) {
-      if (!is_leg_joint(of, entry.first)) continue;
+      if (!of.model.is_leg_joint(of.model.find_dof(entry.first))) continue;
       made.push_back(
           {Rank::missing,
            {of.key_place(i),
@@ -105,7 +96,9 @@ void leg_keys(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
             "without keys of leg joints (give the COG, the feet or the torso instead)"},
            [&of](Pattern& p) {
              for (Keyframe& key : p.keyframes)
-               std::erase_if(key.joints, [&](const auto& e) { return is_leg_joint(of, e.first); });
+               std::erase_if(key.joints, [&](const auto& e) {
+                 return of.model.is_leg_joint(of.model.find_dof(e.first));
+               });
            }});
       return;
     }

@@ -127,6 +127,11 @@ void angle_units(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
                   }});
 }
 
+void scale_times(Pattern& pattern, double factor) {
+  for (Phase& phase : pattern.phases) phase.until *= factor;
+  for (Keyframe& key : pattern.keyframes) key.t *= factor;
+}
+
 void time_units(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
   for (const auto& [unit, factor] :
        {std::pair("ms", 1e-3), std::pair("hundredths of a second", 1e-2)})
@@ -134,10 +139,7 @@ void time_units(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
       made.push_back({Rank::unit,
                       {"/phases", "the motion lasts " + seconds(of.pattern.duration()),
                        std::string("times are in seconds; with all times read as ") + unit},
-                      [factor = factor](Pattern& p) {
-                        for (Phase& phase : p.phases) phase.until *= factor;
-                        for (Keyframe& key : p.keyframes) key.t *= factor;
-                      }});
+                      [factor = factor](Pattern& p) { scale_times(p, factor); }});
 }
 
 // Perhaps only the phases or only the keyframes were stretched in time: tries one factor for the

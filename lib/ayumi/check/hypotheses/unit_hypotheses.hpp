@@ -11,6 +11,8 @@ namespace ayumi::hypotheses {
 
 /// All angles, read in the other unit.
 void angle_units(const ExaminedPattern& of, std::vector<Hypothesis>& made);
+/// Multiplies the times of all phases and keyframes by a factor, as if they had another unit.
+void scale_times(Pattern& pattern, double factor);
 /// All times, read in ms.
 void time_units(const ExaminedPattern& of, std::vector<Hypothesis>& made);
 /// All times of keyframes, multiplied by one factor with which they fit the phases.

@@ -415,9 +415,8 @@ std::string hoap_csv_around(const RobotModel& model, const ReferenceTrajectory& 
   const auto rows = static_cast<Eigen::Index>(table.rows.size());
   if (begin == 0 && end == rows) return bytes;
   const std::vector<int> dofs = dofs_by_device(model, sequence.layout);
-  SequenceLayout layout = sequence.layout;
-  layout.intervals_ms.clear();  // the rows around the file have its own interval
-  const std::string before = std::to_string(interval_of(model, layout, table.dt)) + ",2";
+  // The rows around the file have its own interval, which its layout need not allow.
+  const std::string before = std::to_string(interval_of(model, {}, table.dt)) + ",2";
   const Eigen::MatrixXi counts = counts_of(model, table, options);
   std::string text;
   append_rows(text, counts, dofs, 0, begin, before, sequence.first_words + sequence.line_end);

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "ayumi/base/file.hpp"
+#include "ayumi/base/file_lock.hpp"
 
 namespace ayumi {
 
