@@ -250,7 +250,7 @@ const std::array<Job, 8> kJobs = {{
     {"patterns", "the other bundled patterns", patterns_text,
      "323bb4e42556ec843e7028157758c1d0364f62d716c70644e652a58b2fdb7bfe"},
     {"laws", "other control laws, with a push and noise", laws_text,
-     "ba12348c399d3640cd83b872c447d0eaa2dec12b7f2bd23145d4991e7483bbd0"},
+     "f6b184faadf56210c25f6de3264aea62f94b519634437e5907fea53849e40f12"},
     {"check", "findings and likely causes of patterns with mistakes", check_text,
      "1a4d448e321962bb909d9e3d8a191daa297465acc3f50820fa51788ac8680048"},
     {"repair", "a repaired walk", repair_text,

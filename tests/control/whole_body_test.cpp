@@ -108,6 +108,41 @@ TEST(Resolver, AKneeAtItsStopIsHeld) {
   EXPECT_TRUE(knee);
 }
 
+// While one foot swings and a fast turn of the trunk brings a hip to its position limit, each joint
+// keeps a rate at which it can stop before its limit with the bounded deceleration.
+TEST(ReferenceBody, JointsBrakeBeforeTheirPositionLimits) {
+  Standing robot(0.8);
+  const int n = robot.model.dof_count();
+  const double dt = 0.001, z = 0.2, braking = 5 * 9.81 / z;
+  ReferenceBody body(robot.model, robot.limits, dt, robot.command.state, robot.command.state.theta);
+  robot.command.support = Support::left;
+  UpperBodyTurn turn;
+  turn.joints.setZero(n);
+  turn.joint_rates.setZero(n);
+  turn.lean_rate.x() = 1.5;
+  Eigen::VectorXd before = robot.command.state.theta;
+  double nearest = 1, largest_share = 0;
+  for (int k = 0; k < 1000; ++k) {
+    ControlOutput out;
+    turn.lean.x() = turn.lean_rate.x() * dt * k;
+    body.anchor(Side::left, robot.command.feet[0]);
+    body.turn(turn);
+    body.advance({}, z, robot.command, robot.command, Eigen::VectorXd::Zero(n), out);
+    for (int j = 0; j < n; ++j) {
+      const Dof& dof = robot.model.dofs()[j];
+      const double rate = (body.state().theta[j] - before[j]) / dt;
+      const double room = rate > 0 ? dof.upper - before[j] : before[j] - dof.lower;
+      const double needed = std::abs(rate) * dt + rate * rate / (2 * braking);
+      EXPECT_LE(needed, room + 1e-9) << dof.name << ", tick " << k;
+      if (std::abs(rate) > 0.5) largest_share = std::max(largest_share, needed / room);
+      nearest = std::min(nearest, room - std::abs(rate) * dt);
+    }
+    before = body.state().theta;
+  }
+  EXPECT_LT(nearest, 0.002) << "a joint came to its limit";
+  EXPECT_GT(largest_share, 0.9) << "a fast joint came near the limit";
+}
+
 // A trunk that tilts to the side, with the COG and the soles at rest, turns until a hip is at its
 // position limit. The room that is stated in advance ends there, on either side.
 TEST(ReferenceBody, TheHipsLimitTheTurnOfTheTrunk) {

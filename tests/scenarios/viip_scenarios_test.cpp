@@ -268,19 +268,19 @@ TEST(ViipHoap1, APushWhileSteppingMovesTheFeet) {
   EXPECT_GT(ahead, 0.07);  // the sole on which it stood ends at 0.056
 }
 
-// The robot is pushed forward in the middle of a double support by 2.05 times m omega d_edge.
+// The robot is pushed forward in the middle of a double support by 2.2 times m omega d_edge.
 TEST(ViipHoap1, AStepThatComesSoonerStopsALargerPush) {
   const Pattern steps = goals({{0.5, CogGoal{}}, {5.5, walk(12, 0)}});
   Conditions pushed;
-  pushed.pushes = {push(2.572, {1, 0, 0}, 2.05 * 2.103)};
+  pushed.pushes = {push(2.572, {1, 0, 0}, 2.2 * 2.103)};
   EXPECT_EQ(run_viip(steps, pushed).result.outcome, Outcome::stands);
   pushed.gains = {{"hurry", 100}};
   EXPECT_EQ(run_viip(steps, pushed).result.outcome, Outcome::fell);
 }
 
 TEST(ViipHoap1, WithNothingMeasuredItFallsWhereNoticedLandingsAreEnough) {
-  // The legs are as at home.
-  const Pattern pattern = goals({{0.5, CogGoal{}}, {6.5, walk(14, 0.18)}}, 0);
+  // The legs are as at home, and the robot turns by 10 deg a second.
+  const Pattern pattern = goals({{0.5, CogGoal{}}, {6.5, walk(14, 0.2, 0.1745)}}, 0);
   Conditions conditions;
   conditions.controller = "viip-landings";
   EXPECT_EQ(run_viip(pattern, conditions).result.outcome, Outcome::stands);

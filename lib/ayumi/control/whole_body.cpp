@@ -55,6 +55,13 @@ constexpr double kCogSpeedLimit = 0.8;
 // half and twice the value (constants.md).
 constexpr double kCogAccelerationLimit = 4;
 
+// Deceleration of a joint that turns, before it reaches a position limit while one foot swings, as
+// a multiple of g / z; of a joint that slides, as a multiple of g. Chosen: the tasks that a limit
+// prevents are then reduced before the joint is there, and COG and feet are followed all the time.
+// With 4.5 to 5.5, the worst push in the walk is 1.26 B with hoap1-strong; without braking it is
+// 1.20 B (docs/measurements/law.md, "Braking before position limits").
+constexpr double kBraking = 5;
+
 // A tilted foot counts as lying on the ground, and not as tipping over an edge, if its centre of
 // pressure is farther than this from the nearest edge of the sole, as a share of the largest
 // possible distance. Chosen: 5 mm on HOAP-1, twice the noise of its load cells; docs/theory.md, "A
@@ -107,16 +114,26 @@ void add_chain(const RobotModel& model, const RobotData& data, int body, const V
   }
 }
 
-/// Joint rates for the given task. A joint that would leave its position limits is held there, and
-/// the rest is solved again. A joint that is too fast slows down the whole motion.
+/// The largest rate at which a joint can still stop at `distance` with the deceleration `braking`,
+/// if it begins to brake one tick later: rate dt + rate^2 / (2 braking) = distance. Beyond the
+/// limit, and without braking, it is the rate that leads to the limit in one tick.
+double braking_rate(double distance, double braking, double dt) {
+  if (distance <= 0 || std::isinf(braking)) return distance / dt;
+  return braking * (std::sqrt(dt * dt + 2 * distance / braking) - dt);
+}
+
+/// Joint rates for the given task. A joint that approaches a position limit may have at most
+/// braking_rate(), or its rate of the plan if this is larger, and the rest is solved again. A joint
+/// that is too fast slows down the whole motion.
 void within_limits(const RobotModel& model, const ActuatorLimits& limits,
                    const RobotState& reference, const StackedTask& given, const VectorXd& weight,
-                   double dt, const ResolverOptions& options, ResolverWork& work,
-                   Resolution& result) {
+                   const VectorXd& planned, double dt, const ResolverOptions& options,
+                   ResolverWork& work, Resolution& result) {
   const int n = model.dof_count();
   result.scale = 1;
   result.limiting_dof = -1;
   result.held.clear();
+  result.braking.clear();
   const StackedTask* task = &given;
   work.start = work.bias;
   for (int pass = 0; pass < kLimitPasses; ++pass) {
@@ -126,10 +143,17 @@ void within_limits(const RobotModel& model, const ActuatorLimits& limits,
       const Dof& dof = model.dofs()[j];
       if (!dof.limited || std::find(result.held.begin(), result.held.end(), j) != result.held.end())
         continue;
-      const double after = reference.theta[j] + dt * result.dtheta[j];
-      const double stop = std::clamp(after, dof.lower, dof.upper);
-      if (stop == after) continue;
-      const double rate = (stop - reference.theta[j]) / dt;
+      const double braking = dof.prismatic ? options.sliding_braking : options.braking;
+      const double up = dof.upper - reference.theta[j], down = reference.theta[j] - dof.lower;
+      const double speed = std::abs(result.dtheta[j]);
+      if (up >= 0 && down >= 0 &&
+          speed * dt + speed * speed / (2 * braking) <= (result.dtheta[j] > 0 ? up : down))
+        continue;
+      const double least =
+          -std::min(down / dt, std::max(braking_rate(down, braking, dt), -planned[j]));
+      const double most = std::min(up / dt, std::max(braking_rate(up, braking, dt), planned[j]));
+      const double rate = std::min(std::max(result.dtheta[j], least), most);
+      if (rate == result.dtheta[j]) continue;
       if (task == &given) {
         work.moving = given;
         task = &work.moving;
@@ -138,6 +162,7 @@ void within_limits(const RobotModel& model, const ActuatorLimits& limits,
       work.moving.J.col(j).setZero();
       work.start[j] = rate;
       result.held.push_back(j);
+      if (rate != up / dt && rate != -down / dt) result.braking.push_back(j);
       changed = true;
     }
     if (!changed) break;
@@ -151,6 +176,14 @@ void within_limits(const RobotModel& model, const ActuatorLimits& limits,
     }
   }
   result.dtheta *= result.scale;
+}
+
+/// Adds the joints `more` to `joints`, in rising order and each once.
+void add_joints(std::vector<int>& joints, const std::vector<int>& more) {
+  joints.insert(joints.end(), more.begin(), more.end());
+  std::ranges::sort(joints);
+  const auto [first, last] = std::ranges::unique(joints);
+  joints.erase(first, last);
 }
 
 void soften(StackedTask& task, int first, int count) {
@@ -259,6 +292,7 @@ void resolve(const RobotModel& model, const ActuatorLimits& limits, const RobotS
     work.bias += options.turn.joint_rates + options.posture_rate * options.turn.joints;
 
   result.held.clear();
+  result.braking.clear();
   result.limiting_dof = -1;
   for (const YieldingTasks yielding : {YieldingTasks{}, YieldingTasks{.height = true},
                                        YieldingTasks{.height = true, .trunk = true}}) {
@@ -267,11 +301,11 @@ void resolve(const RobotModel& model, const ActuatorLimits& limits, const RobotS
     if (yielding.height) soften(work.softened, 2, 1);
     if (yielding.trunk) soften(work.softened, 9, 3);
     Resolution& attempt = work.attempt;
-    within_limits(model, limits, reference, asked, weight, dt, options, work, attempt);
+    within_limits(model, limits, reference, asked, weight, command.state.dtheta, dt, options, work,
+                  attempt);
     if (yielding.height) {  // the joints because of which the task was reduced stay recorded
-      attempt.held.insert(attempt.held.end(), result.held.begin(), result.held.end());
-      std::sort(attempt.held.begin(), attempt.held.end());
-      attempt.held.erase(std::unique(attempt.held.begin(), attempt.held.end()), attempt.held.end());
+      add_joints(attempt.held, result.held);
+      add_joints(attempt.braking, result.braking);
       if (attempt.limiting_dof < 0) attempt.limiting_dof = result.limiting_dof;
     }
     attempt.yielding = yielding;
@@ -315,7 +349,11 @@ std::vector<std::string> limit_notes(const RobotModel& model, const Resolution& 
     notes.push_back(model.dofs()[resolution.limiting_dof].name +
                     " is at its speed limit: " + effect);
   for (const int j : resolution.held)
-    notes.push_back(model.dofs()[j].name + " is at its position limit: " + effect);
+    notes.push_back(model.dofs()[j].name +
+                    (std::ranges::find(resolution.braking, j) == resolution.braking.end()
+                         ? " is at its position limit: "
+                         : " brakes before its position limit: ") +
+                    effect);
   return notes;
 }
 
@@ -409,6 +447,10 @@ void ReferenceBody::advance(const CogReference& wanted, double z, const CommandS
   if (dcog_.norm() > speed) dcog_ *= speed / dcog_.norm();
   ref.dcog = dcog_;
 
+  // While both feet stand, turn_room() already bounds the turn of the trunk.
+  options_.sliding_braking =
+      command.support == Support::both ? ResolverOptions().braking : kBraking * kGravity;
+  options_.braking = options_.sliding_braking / z;
   resolve(*model_, limits_, reference_, data_, anchor_, dcog_, command, next, dt_, weight_,
           options_, work_, resolution_);
   if (resolution_.limiting_dof >= 0 || !resolution_.held.empty())

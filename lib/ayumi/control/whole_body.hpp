@@ -3,6 +3,7 @@
 // law moves with them: a posture anchored on a planned sole, whose COG has the reference velocity,
 // and the servo targets that make the robot follow.
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,7 +44,11 @@ struct ResolverOptions {
   double damping = 1e-5;        ///< damping of J_U W^-1 J_U', as a multiple of trace / rows
   double angular_length = 0.2;  ///< length that makes angular rows comparable with linear ones [m]
   double speed_share = 0.98;    ///< share of a joint's speed limit that may be used
-  UpperBodyTurn turn = {};      ///< turn of the trunk and the arms relative to their command
+  /// Deceleration with which a joint that turns brakes before its position limit [rad/s^2], and a
+  /// joint that slides [m/s^2]. If infinite, a joint stops in one tick when it is at the limit.
+  double braking = std::numeric_limits<double>::infinity();
+  double sliding_braking = std::numeric_limits<double>::infinity();
+  UpperBodyTurn turn = {};  ///< turn of the trunk and the arms relative to their command
   /// Whether tasks are reduced one after the other. Otherwise all of them are reduced together.
   bool in_order = true;
 };
@@ -59,8 +64,9 @@ struct Resolution {
   double scale = 1;        ///< below 1 if a speed limit made the whole motion slower
   /// Joint whose speed limit made the law reduce tasks or slow the motion down.
   int limiting_dof = -1;
-  std::vector<int> held;   ///< joints at a position limit
-  YieldingTasks yielding;  ///< the tasks that were reduced
+  std::vector<int> held;     ///< joints whose rates a position limit bounds
+  std::vector<int> braking;  ///< those of them that brake before the limit, and are not at it
+  YieldingTasks yielding;    ///< the tasks that were reduced
   TaskResiduals residuals;
 };
 
