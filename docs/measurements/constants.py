@@ -43,10 +43,10 @@ SOURCES = ["repair/policy.hpp", "limits", "check", "demand", "control", "sim", "
 
 # Constants that the compiler has to know, or whose half and double have no meaning.
 LEFT_OUT = {
-    "kWhole": "the number 1, which stands for the whole of a limit",
+    "kWhole": "the number 1, which means the full limit",
     "kFindingKindCount": "a count",
     "kRows": "the size of a matrix",
-    "kReserved": "reserves memory, changes no result",
+    "kReserved": "reserves memory and changes no result",
     "Keys": "an identifier",
     "Ids": "an identifier",
     "kTipsOfShape": "an identifier",
@@ -57,20 +57,20 @@ LEFT_OUT = {
     "kTooFast": "an identifier",
     "kTooFar": "an identifier",
     "kLargestCount": "the size of a number in a file",
-    "plant_mujoco": "belongs to the second plant, which the cases do not use",
-    "kLargestNumber": "refuses input, changes no result",
-    "kMostSamples": "refuses input, changes no result",
-    "kMostLogEvents": "refuses input, changes no result",
-    "kMostLatency": "refuses input, changes no result",
-    "first_sidecar.cpp:kLead": "refuses input, changes no result",
-    "kHelium": "refuses input, changes no result",
+    "plant_mujoco": "belongs to MuJoCo's plant, which the cases do not use",
+    "kLargestNumber": "refuses input and changes no result",
+    "kMostSamples": "refuses input and changes no result",
+    "kMostLogEvents": "refuses input and changes no result",
+    "kMostLatency": "refuses input and changes no result",
+    "first_sidecar.cpp:kLead": "refuses input and changes no result",
+    "kHelium": "refuses input and changes no result",
     "kRadian": "mathematics",
     "kSwaySmooth": "used for legs without ankle roll, which no robot of the cases has",
     "kZmpStep": "used for legs without ankle roll, which no robot of the cases has",
     "kInsideShare": "used for legs without ankle roll, which no robot of the cases has",
     "kNotMeasured": "an identifier",
-    "check/consistency.cpp:kBlockSamples": "divides work between threads, changes no result",
-    "check/consistency.cpp:kBlocksAtOnce": "divides work between threads, changes no result",
+    "check/consistency.cpp:kBlockSamples": "divides work between threads and changes no result",
+    "check/consistency.cpp:kBlocksAtOnce": "divides work between threads and changes no result",
     "first_sidecar": "a guess that `init` writes into the sidecar with a request to replace it",
     "differentiate": "the reach of a formula",
 }
@@ -816,7 +816,7 @@ def write_page(results, found, commit, whole=True):
         lines += ["", f"### {room}", "", "| constant | value | at half | at twice |",
                   "| --- | --- | --- | --- |", *rows]
     lines += ["", "### Left out", "",
-              "These constants were not measured, for the reason that is stated before their names:", ""]
+              "These constants were not measured. Each line states the reason before the names of the constants:", ""]
     for why in sorted({w for _, _, w in found if w}):
         names = [f"`{n.split('/')[-1]}`" for n, _, w in found if w == why]
         lines += textwrap.wrap(f"- {why}: {', '.join(names)}", 150, subsequent_indent="  ",
