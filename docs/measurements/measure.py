@@ -190,13 +190,13 @@ def latency_standing():
     lines = head("robot, law", *[f"{ms} ms" for ms in LATENCIES])
     for name, robot, controller, impulse, words in [
         ("HOAP-1, DTAD", "hoap1", "dtad", 0.3, []),
-        ("the same with `damp=0`", "hoap1", "dtad", 0.3, gain("damp=0")),
+        ("previous row, with `damp=0`", "hoap1", "dtad", 0.3, gain("damp=0")),
         ("HOAP-1 on soft servos (`hoap1-soft`), DTAD", "hoap1", "dtad", 0.3,
          ["--profile", "hoap1-soft"]),
         ("HOAP-1, VIIP", "hoap1", "viip", 0.3, []),
-        ("the same with `damp=0`", "hoap1", "viip", 0.3, gain("damp=0")),
+        ("previous row, with `damp=0`", "hoap1", "viip", 0.3, gain("damp=0")),
         ("`humanoid30`, DTAD, 2.4 N s", "humanoid30", "dtad", 2.4, []),
-        ("the same with `damp=0`", "humanoid30", "dtad", 2.4, gain("damp=0")),
+        ("previous row, with `damp=0`", "humanoid30", "dtad", 2.4, gain("damp=0")),
         ("`humanoid30`, VIIP, 2.4 N s", "humanoid30", "viip", 2.4, []),
     ]:
         lines.append(row(name, *[
@@ -210,12 +210,12 @@ def latency_walking():
     lines = head("pattern, law", *[f"{ms} ms" for ms in LATENCIES])
     for name, source, world, robots, words in [
         ("`hoap1_walk`, DTAD", "hoap1_walk", {}, None, []),
-        ("the same with `damp=0`", "hoap1_walk", {}, None, gain("damp=0")),
+        ("previous row, with `damp=0`", "hoap1_walk", {}, None, gain("damp=0")),
         ("`hoap1_walk`, DTAD, on ground that rises by 3°", "hoap1_walk", {"ground": {"pitch": -3}}, None,
          []),
         ("`hoap1_walk`, DTAD, on soles of 60 kN/m", "hoap1_walk", {}, softer_soles(6e4), []),
         ("`hoap1_viip_step` without its push, VIIP", "hoap1_viip_step", {}, None, []),
-        ("the same with `damp=0`", "hoap1_viip_step", {}, None, gain("damp=0")),
+        ("previous row, with `damp=0`", "hoap1_viip_step", {}, None, gain("damp=0")),
         ("`humanoid30_walk` without its push, DTAD", "humanoid30_walk", {}, None, []),
     ]:
         cells = []
@@ -396,7 +396,7 @@ def pushes_viip():
     lines = head("robot", "VIIP [B]", "VIIP [N s]", "landings alone [B]", "no feedback [B]")
     for name, robot, profile, words in [
         ("HOAP-1, `hoap1-strong`", "hoap1", "hoap1-strong", ()),
-        ("the same, `--noise`", "hoap1", "hoap1-strong", ("--noise",)),
+        ("previous row, with `--noise`", "hoap1", "hoap1-strong", ("--noise",)),
         ("`humanoid30`", "humanoid30", "humanoid30", ()),
     ]:
         study = push_study(stepping(robot, profile), *FOUR, *words, "--controller", "viip",
