@@ -292,7 +292,8 @@ TEST(MotionFormats, MistakesNameFileLineAndFormat) {
             "because the "
             "rows have the form `dt n ( values )`");
   EXPECT_EQ(told(refusal_of("0.02 2 ( 1 2 )\n0.02 2 ( 1 2\n")),
-            "m.dat:2: the bracket ( is not closed, so the row was cut; copy the file again (read "
+            "m.dat:2: the bracket ( is not closed, so the row was cut; copy the file again (the "
+            "file was read "
             "as mi-lib .zvs, because the rows have the form `dt n ( values )`");
   EXPECT_TRUE(refusal_of("0.02 2 ( 1\n2 )\n0.02 2 ( 1\n0.02 2 ( 1 2 )\n")
                   .starts_with("m.dat:3: the bracket ( is not closed"));
