@@ -170,9 +170,11 @@ std::string option_message(const CLI::App& app, const CLI::ParseError& error) {
       const int given = std::atoi(rest.c_str() + rest.rfind(' '));
       return name + ": " + text::counted(given, "value") + (given == 1 ? " is" : " are") +
              " given, but " +
-             (least == most   ? std::to_string(most) + " needed"
-              : given < least ? "at least " + std::to_string(least) + " needed"
-                              : "at most " + std::to_string(most) + " allowed") +
+             (given >= least ? "at most "
+              : least < most ? "at least "
+                             : "") +
+             (given < least ? std::to_string(least) + (least == 1 ? " is" : " are") + " needed"
+                            : std::to_string(most) + (most == 1 ? " is" : " are") + " allowed") +
              help;
     }
   return words;
@@ -315,9 +317,8 @@ void refuse_words(int argc, char** argv) {
     if (!is_utf8(word))
       fail(ErrorCode::usage, {"", place},
            "'" + word +
-               "' is not UTF-8 text, so Ayumi cannot write this text into "
-               "results; give UTF-8 text, and "
-               "rename a file whose name is not UTF-8 text");
+               "' is not UTF-8 text, so Ayumi cannot write it into results; "
+               "give UTF-8 text (if this is the name of a file, rename the file)");
   }
 }
 

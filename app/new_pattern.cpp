@@ -69,8 +69,8 @@ bool write_new_pattern(Context& context, const RobotModel& model, Pattern patter
       return make_task(std::move(pattern), model, "", context.progress());
     } catch (const Error& error) {
       fail(error.code(),
-           std::string("nothing is written, because the robot cannot do this; other values of "
-                       "options, such as --cog-height, may help: ") +
+           std::string("nothing is written, because the robot cannot do this motion. Other "
+                       "values of options, such as --cog-height, may help. First error: ") +
                error.what());
     }
   }();

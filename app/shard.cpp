@@ -16,8 +16,8 @@ Shard read_shard(const std::string& word, const std::string& option) {
       static_cast<size_t>(read) != word.size() || shard.count < 1 || shard.index < 1 ||
       shard.index > shard.count)
     fail(ErrorCode::usage, option + " " + word +
-                               ": give the number of the shard and the number of all shards, "
-                               "for example 1/4");
+                               ": give I/N, for example 1/4. N is the number of all shards, and "
+                               "I is the number of one shard, from 1 to N");
   --shard.index;
   return shard;
 }

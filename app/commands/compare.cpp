@@ -74,10 +74,10 @@ std::string curve_words(const ComparedCurve& curve, double unit, const std::stri
                       " on average, at most " + text::brief(curve.largest / unit, 3) + name +
                       " at " + text::fixed(curve.largest_at, 3) + " s";
   if (std::abs(curve.lag) >= 0.00005)  // a lag that would be printed as 0.0 ms is left out
-    words += ", the recording is " + text::fixed(1000 * std::abs(curve.lag), 1) +
-             (curve.lag > 0 ? " ms behind" : " ms ahead");
+    words += "; the recording is " + text::fixed(1000 * std::abs(curve.lag), 1) +
+             (curve.lag > 0 ? " ms behind the run" : " ms ahead of the run");
   if (curve.unit != "rad" && curve.correlation != 0)
-    words += ", correlation " + text::fixed(curve.correlation, 3);
+    words += "; the correlation is " + text::fixed(curve.correlation, 3);
   return words + "\n";
 }
 

@@ -135,7 +135,8 @@ void write_edited(Context& context, const EditCommand& options, const Edited& ed
   refuse_overwriting(context, options.out);
   if (pattern.table) refuse_overwriting(context, table_beside(options.out));
   if (!edited.lost.empty())
-    context.print("not kept in " + options.out + ": " + text::join(edited.lost, ", ") + "\n");
+    context.print("these parts of the text are not kept in " + options.out + ": " +
+                  text::join(edited.lost, ", ") + "\n");
   write_pattern_and_table(options.out, pattern, {}, result.caution, {}, edited.text);
   std::vector<AnswerPart> parts = {{Worth::verdict,
                                     {options.out + ": " + painted_verdict(result.report) + ", " +

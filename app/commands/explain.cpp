@@ -135,7 +135,8 @@ void add_explain(Command& app, Context& context) {
       "  ayumi explain 14 out/hoap1_walk@3.05 --log open_loop");
   auto options = std::make_shared<ExplainCommand>();
   command->add_option("EQ", options->equation, "Number of the equation, 1 to 29.")->required();
-  command->add_option("RUN@t", options->run, "Run folder or log file, and a time [s].");
+  command->add_option("RUN@t", options->run,
+                      "Run folder or log file, the sign @, and a time [s], for example out/@2.5.");
   command->add_option("--log", options->log, "Log of the run, for example open_loop.");
   command->add_option("--robot", options->robot,
                       "Robot to use in place of the one that the run names.");

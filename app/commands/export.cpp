@@ -527,7 +527,7 @@ std::string in_words(const ExportOptions& options, const Source& source, const S
           (plays(options) ? "  written although " : "  the table is not for a robot, because ") +
           reason + "\n";
   if (const std::string lost = lost_content(options, source, safe); !lost.empty())
-    text += "  the format cannot hold " + lost + "\n";
+    text += "  the format cannot store " + lost + "\n";
   const TableServo& servo = safe.table.servo;
   if (!servo.content.empty())
     text += "  made for the servos of profile " + servo.profile + ": " + words_of(servo) + "\n";
@@ -535,16 +535,16 @@ std::string in_words(const ExportOptions& options, const Source& source, const S
   text += "  ramp " + text::brief(report.ramp) + " s, hold " + text::brief(report.hold) +
           " s; the pattern begins at " + text::brief(report.ramp) + " s of the table";
   if (!report.worst_joint.empty())
-    text += "; the largest step from row to row is " + text::fixed(100 * report.max_step_ratio, 1) +
-            " % of the limit (" + report.worst_joint + " at " +
-            on_both_clocks(report.worst_at, report.ramp, report.ramp + report.motion) + ")";
+    text += "; the largest step from row to row is that of " + report.worst_joint + " at " +
+            on_both_clocks(report.worst_at, report.ramp, report.ramp + report.motion) + ", " +
+            text::fixed(100 * report.max_step_ratio, 1) + " % of the limit";
   const ShownUnit margin = shown_unit("rad", angles_in_degrees(source));
   if (!report.margin_joint.empty())
     text += (report.min_limit_margin < 0 ? "; the joint farthest beyond its position limit is "
                                          : "; the joint nearest to its position limit is ") +
-            report.margin_joint + " (" +
+            report.margin_joint + ", " +
             text::brief(std::abs(report.min_limit_margin) * margin.scale, 3) + " " + margin.name +
-            ")";
+            (report.min_limit_margin < 0 ? " beyond this limit" : " from this limit");
   text += "\n";
   for (const SafetyViolation& violation : report.violations)
     text += "  unsafe: " + text_of(violation, angles_in_degrees(source)) + "\n";

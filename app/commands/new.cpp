@@ -123,11 +123,12 @@ std::vector<double> values_of(const Context& context, const RobotModel& model,
                   std::to_string(result.tried) +
                   " trials found no values that keep the robot standing\n");
   else if (result.found)
-    context.print(
-        "the default values ask too much of " + model.name() + ". First error: " + result.limit +
-        "\n"
-        "  after " +
-        std::to_string(result.tried) + " trials, these values were found: " + changed + "\n");
+    context.print(model.name() +
+                  " cannot do this motion with the default values. First error: " + result.limit +
+                  "\n"
+                  "  after " +
+                  std::to_string(result.tried) + " trials, these values were found: " + changed +
+                  "\n");
   else if (result.tried > 1 && (!result.nearest.empty() || !result.refused)) {
     context.print("none of " + std::to_string(result.tried) +
                   " combinations of values passes the check. ");
@@ -289,7 +290,7 @@ std::string what_it_can_do(const RobotModel& model, const std::string& robot) {
     }
   return commands.empty()
              ? ""
-             : "; no walk was found, but these commands make motions that the robot can do: " +
+             : ". No walk was found, but these commands make motions that the robot can do: " +
                    text::join(commands, ", ");
 }
 

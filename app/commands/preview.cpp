@@ -269,9 +269,10 @@ void add_picture_options(Command& command, PreviewOptions& options) {
                      "Time of the motion at which the clip ends [s] (default: the end).");
   command.add_option(
       "--at", clip.at,
-      "Time of the picture, if the file is a single picture [s] (default: just after "
-      "the first push; without a push, the time of the fall; otherwise the middle of the first "
-      "flight; otherwise the time at which the posture differs most from the one at the start).");
+      "Time of the picture, if the file is a single picture [s] (default: the first "
+      "of these times that exists: just after the first push, at the fall, in the middle of the "
+      "first flight; otherwise the time at which the posture differs most from the first "
+      "posture).");
   command.add_option("--strip", options.strip, "Number of snapshots side by side in a .png.")
       ->check(whole_number_within(StripOptions::kCount));
   command

@@ -382,7 +382,7 @@ class StruggleTeller {
     const size_t named = std::min(left_.size(), kMostNamed);
     std::string out = text::join({left_.begin(), left_.begin() + static_cast<long>(named)}, "; ");
     if (left_.size() > named)
-      out += "; and " + text::counted(static_cast<long>(left_.size() - named), "more error");
+      out += " (and " + text::counted(static_cast<long>(left_.size() - named), "more error") + ")";
     return out;
   }
 

@@ -173,8 +173,9 @@ std::string in_degrees(double angle, int digits = 3) {
 
 std::string text_of(const Clamp& clamp) {
   return clamp.joint + " by up to " + in_degrees(clamp.change) + " at " + text::fixed(clamp.t, 3) +
-         " s (limit of the " + (clamp.kind == "range" ? "counts of 16 bits" : clamp.kind) + ", " +
-         std::to_string(clamp.rows) + (clamp.rows == 1 ? " tick)" : " ticks)");
+         " s (because of the limit of the " +
+         (clamp.kind == "range" ? "counts of 16 bits" : clamp.kind) + ", in " +
+         text::counted(clamp.rows, "servo period") + ")";
 }
 
 Json json_of(const Clamp& clamp) {

@@ -83,6 +83,19 @@ TEST(LikelyMistakes, ASearchWithoutACauseComesLast) {
   EXPECT_EQ(explained.place().inside, "/units") << "the place to change";
 }
 
+// The changes of one round are alternatives, so "in addition" is only before the first of them.
+TEST(LikelyMistakes, AlternativesOfALaterRoundAreJoinedByOr) {
+  const Error error(ErrorCode::bad_pattern, "/phases/9: out of reach");
+  const auto mistake = [](const char* words, int round) {
+    return Mistake{.place = "", .words = words, .round = round};
+  };
+  const std::vector<Mistake> mistakes = {mistake("a", 0), mistake("b", 0), mistake("c", 1),
+                                         mistake("d", 1), mistake("e", 2)};
+  EXPECT_EQ(with_mistakes(error, sound_walk(), mistakes).words(),
+            "likely cause: a; or b; in addition, c; or d; in addition, e; the first error is: "
+            "/phases/9: out of reach");
+}
+
 TEST(ImpossibleValues, SoundPatternsHaveNone) {
   for (const Pattern& pattern :
        {sound_walk(), stand_pattern(hoap1(), 1), sway_pattern(hoap1(), sway_defaults(hoap1()))})

@@ -231,7 +231,7 @@ std::vector<Mistaken> make_list() {
   add("a missing double support", small(), steps, "/phases/4: .*\"both\" may be missing",
       [](Pattern& p) { p.phases.erase(p.phases.begin() + 4); });
   add("all ZMP keys under the other foot", small(), steps,
-      "/keyframes: the keys put the ZMP under the left foot where .*exchanged in all ZMP keys",
+      "/keyframes: the keys put the ZMP under the foot that does not .*exchanged in all ZMP keys",
       [](Pattern& p) {
         for (Keyframe& key : p.keyframes)
           if (key.zmp && key.zmp->place != ZmpKey::Place::center)
@@ -239,7 +239,8 @@ std::vector<Mistaken> make_list() {
                 key.zmp->place == ZmpKey::Place::left ? ZmpKey::Place::right : ZmpKey::Place::left;
       });
   add("no ZMP key under a foot", small(), steps,
-      "/phases/1: the robot stands on the left foot, .*at \"center\"; this is so in 4 phases",
+      "/phases/1: the robot stands on the left foot, .*at \"center\"; the ZMP is wrong in the same "
+      "manner in 4 phases",
       [](Pattern& p) {
         for (Keyframe& key : p.keyframes)
           if (key.zmp) key.zmp->place = ZmpKey::Place::center;
@@ -817,7 +818,7 @@ TEST(PlantedMistakes, AValueIsChangedOnlyOnce) {
       for (const Mistake& mistake : likely_mistakes(small(), pattern, strong_options(pattern))) {
         const std::string text = mistake.text();
         EXPECT_TRUE(values.insert(text.substr(0, text.find(" is ") + 4)).second) << text;
-        EXPECT_EQ(mistake.further, text.find("named first for /") != std::string::npos) << text;
+        EXPECT_EQ(mistake.round > 0, text.find("named first for /") != std::string::npos) << text;
       }
     }
 }

@@ -144,7 +144,7 @@ TEST(WrittenValues, NameTheOtherPlaces) {
   EXPECT_EQ(elsewhere(1), "");
   EXPECT_EQ(elsewhere(2), " here and in /keyframes/1");
   EXPECT_EQ(elsewhere(4), " here and in /keyframes/1, /keyframes/2, /keyframes/3");
-  EXPECT_EQ(elsewhere(5), " here and in the 4 other places that have it");
+  EXPECT_EQ(elsewhere(5), " here and in the 4 other places that have this value");
 }
 
 TEST(WrittenValues, AreMeasuredByLegsRadiansAndTheWeight) {

@@ -260,7 +260,8 @@ TEST_F(Edit, SaysWhatIsLost) {
   ASSERT_EQ(ayumi({"new", "squat", "--robot", "hoap1", "-o", "squat.json"}).exit_code, 0);
   const Output other =
       ayumi({"edit", "blend", "kick.json", "squat.json", "--over", "0.5", "-o", "other.json"});
-  EXPECT_EQ(other.out.find("not kept in other.json: "), 0u) << other.out;
+  EXPECT_EQ(other.out.find("these parts of the text are not kept in other.json: "), 0u)
+      << other.out;
   EXPECT_NE(other.out.find(" of squat.json\n"), std::string::npos) << other.out;
   const Output mirrored = ayumi({"edit", "mirror", "kick.json", "-o", "m.json"});
   EXPECT_EQ(mirrored.out.find("not kept"), std::string::npos) << mirrored.out;

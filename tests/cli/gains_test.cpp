@@ -87,8 +87,7 @@ TEST(GainsCommand, RefusesWithTheReason) {
   refused({"gains", "hoap1", "--gain", "k=2", "--gain", "d=0"}, "need K > 1 and D > 0");
   refused({"gains", "hoap1", "--absorb", "0.95"}, "the loop is unstable with");
   refused({"gains", "hoap1", "--latency", "0.05"}, "sensors and servos that are 50 ms late");
-  refused({"gains", "hoap1", "--absorb", "1"},
-          "an absorbed share of the ZMP error of 1 is not possible");
+  refused({"gains", "hoap1", "--absorb", "1"}, "a short-term absorption of 1 is not possible");
   refused({"gains", "hoap1", "--poles", "-1,-2", "--time-constants", "1,2"},
           "the poles are given more than once");
 }

@@ -252,7 +252,7 @@ TEST(Init, ValuesThatPassAreFound) {
   write(folder / "robot.urdf", kind.text());
   const Output made = ayumi(folder, {"new", "walk", "--robot", "robot.urdf", "-o", "w.json"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
-  EXPECT_NE(made.out.find("the default values ask too much of robot. First error: "),
+  EXPECT_NE(made.out.find("robot cannot do this motion with the default values. First error: "),
             std::string::npos)
       << made.out;
   EXPECT_NE(made.out.find("trials, these values were found: "), std::string::npos);

@@ -230,9 +230,8 @@ TEST(GainDesign, RefusesWishesThatNoGainsFulfil) {
             "poles: the real part 0 is not below 0, so the COG would never come back");
   GainWishes wishes;
   wishes.absorb = 1;
-  EXPECT_EQ(
-      refused(wishes),
-      "an absorbed share of the ZMP error of 1 is not possible: it must be at least 0 and below 1");
+  EXPECT_EQ(refused(wishes),
+            "a short-term absorption of 1 is not possible: it must be at least 0 and below 1");
   wishes.absorb = 0;
   EXPECT_EQ(design_gains(6, wishes, {}).zmp_gain, 0);
   wishes = {};

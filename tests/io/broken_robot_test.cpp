@@ -275,7 +275,7 @@ TEST(BrokenRobot, WrongSidecars) {
             "robot.json: /urdf: there is no file robot.urdf, and robot.urdf is neither in a folder "
             "of --robot-path nor in its subfolder urdf/");
   folder.write("robot.json", "");
-  EXPECT_EQ(message_of(folder, "robot.json"), "robot.json: the file is empty; it must hold JSON");
+  EXPECT_EQ(message_of(folder, "robot.json"), "robot.json: the file is empty, but JSON is needed");
   folder.write("robot.json", "{ \"format\": \"ayumi.pattern/1\" }");
   EXPECT_EQ(message_of(folder, "robot.json"),
             "robot.json: /format: this is a pattern, and not a robot; `ayumi check FILE` reads it");

@@ -29,8 +29,8 @@ std::string refusal(const std::string& text, ImportOptions options = {}) {
     EXPECT_EQ(error.code(), ErrorCode::bad_file);
     // The end of the message tells how the format was recognized.
     const std::string message = error.what();
-    return message.substr(0,
-                          message.find(" (read as table with a head row, because the first row"));
+    return message.substr(
+        0, message.find(" (the file was read as table with a head row, because the first row"));
   }
   return "read";
 }
@@ -252,9 +252,9 @@ TEST(ForeignTable, TheFirstColumnOfTimesCounts) {
 TEST(ForeignTable, MistakesAreOneLine) {
   const std::string good = table("t,l_elbow,r_knee", ',', '.', 1, 1);
   EXPECT_EQ(refusal(good),
-            "a.csv: column 'l_elbow' reaches 19 rad, which no joint reaches; give "
+            "a.csv: column 'l_elbow' reaches 19 rad, but no joint can turn so far; give "
             "--unit deg if the angles are in degrees");
-  EXPECT_EQ(refusal("\xFF\xFEt\0,\0"), "a.csv:1: this is UTF-16 text; save it as UTF-8");
+  EXPECT_EQ(refusal("\xFF\xFEt\0,\0"), "a.csv:1: the file is UTF-16 text; save the file as UTF-8");
   EXPECT_EQ(refusal("t l_elbow r_knee\n0 0 0\n1 0 0\n"),
             "a.csv: only blanks separate the columns; use commas, semicolons or tabs");
   EXPECT_EQ(refusal("t,l_elbow\n0,0\n0.2,0\n0.1,0\n"),

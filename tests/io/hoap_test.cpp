@@ -228,7 +228,7 @@ TEST(Hoap, ZerosAreNoRecordingAndJumpsAreNamed) {
   const std::string error = test::error_message([&] { read_motion_rows(zeros, "z.csv", hoap1()); });
   EXPECT_TRUE(
       error.starts_with("z.csv: every value of every motor is 0, so nothing was recorded; record "
-                        "again (read as HOAP sequence, "))
+                        "again (the file was read as HOAP sequence, "))
       << error;
   const ImportedMotion motion = read_motion_rows(jump, "j.csv", hoap1());
   ASSERT_FALSE(motion.filled.empty());

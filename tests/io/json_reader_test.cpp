@@ -24,7 +24,7 @@ std::string parse_error(const std::string& bytes) {
 TEST(JsonReader, NamesLineAndColumnOfASyntaxError) {
   EXPECT_EQ(parse_error("{\n  \"a\": 1,\n  \"b\": }\n"),
             "f.json:3:7: the value of the name \"b\" is missing after its colon");
-  EXPECT_EQ(parse_error(" \n"), "f.json: the file is empty; it must hold JSON");
+  EXPECT_EQ(parse_error(" \n"), "f.json: the file is empty, but JSON is needed");
   EXPECT_TRUE(parse_error("{\"a\": NaN}").starts_with("f.json:1:"));
   EXPECT_NE(parse_error("{\"a\": 1e999}").find("f.json"), std::string::npos);
   EXPECT_EQ(parse_error("{\"a\": {\"b\": 1, \"b\": 2}}"),
@@ -65,7 +65,7 @@ TEST(JsonReader, NamesASlipInWordsAboutTheText) {
       {"{\"at\": [-0,042]}", "f.json:1:11: a number has a decimal point, not a comma"},
       {"{\"a\": 1, \u540d\u524d\u540d\u524d\u540d\u524d\u540d\u524d\u540d: 1}",
        "f.json:1:10: the name \u540d\u524d\u540d\u524d\u540d\u524d\u540d\u524d... needs"},
-      {"{\"\x95\": \"\x95\x5c\"}", "f.json:1:3: the text is not in the encoding UTF-8 here"},
+      {"{\"\x95\": \"\x95\x5c\"}", "f.json:1:3: the text is not UTF-8 here"},
       {"{\"t\": \x1b 5}", "f.json:1:7: there is an invisible character here; remove it"},
       {std::string("{\"t\": \0 5}", 10),
        "f.json:1:7: there is an invisible character here; remove it"},
@@ -87,9 +87,9 @@ TEST(JsonReader, NamesASlipInWordsAboutTheText) {
       {"{\"a\": [\n1",
        "f.json:2:2: the text ends too early; missing: ] for the [ of line 1, then }"},
       {"/* x", "f.json:1:1: this comment has no end: */ is missing"},
-      {"{\"a\": \"\xff\"}", "f.json:1:8: the text is not in the encoding UTF-8 here"},
-      {std::string("\xff\xfe{\0}\0", 6), "f.json: this is UTF-16 text; save it as UTF-8"},
-      {std::string("\xfe\xff\0{\0}", 6), "f.json: this is UTF-16 text; save it as UTF-8"},
+      {"{\"a\": \"\xff\"}", "f.json:1:8: the text is not UTF-8 here"},
+      {std::string("\xff\xfe{\0}\0", 6), "f.json: the file is UTF-16 text; save the file as UTF-8"},
+      {std::string("\xfe\xff\0{\0}", 6), "f.json: the file is UTF-16 text; save the file as UTF-8"},
   };
   for (const auto& [text, words] : slips)
     EXPECT_TRUE(parse_error(text).starts_with(words)) << text << "\n" << parse_error(text);

@@ -271,7 +271,7 @@ std::string told(const std::string& message) {
 TEST(MotionFormats, MistakesNameFileLineAndFormat) {
   const std::string head = "#WEBOTS_MOTION,V1.0,l_knee,r_knee\n";
   const std::string webots =
-      " (read as Webots .motion, because the first line begins with #WEBOTS_MOTION";
+      " (the file was read as Webots .motion, because the first line begins with #WEBOTS_MOTION";
   EXPECT_EQ(told(refusal_of(head + "00:00:000,a,0,0\n00:00:040,b,0\n")),
             "m.dat:3: the row has 3 cells, but the head row needs 4 (2 joints)" + webots);
   EXPECT_EQ(told(refusal_of(head + "00:00:000,a,0,0\n00:00:040,b,0")),
@@ -283,14 +283,17 @@ TEST(MotionFormats, MistakesNameFileLineAndFormat) {
   EXPECT_EQ(told(refusal_of("#WEBOTS_MOTION,V3.0,l_knee\n")),
             "m.dat:1: version 'V3.0' is unknown; Ayumi reads V1.0 and V1.1" + webots);
   EXPECT_EQ(told(refusal_of("time,0,1\nl_knee,0,1\nr_knee,0\n")),
-            "m.dat:3: the row of 'r_knee' has 1 value, but the first row has 2 times (read as CSV "
+            "m.dat:3: the row of 'r_knee' has 1 value, but the first row has 2 times (the file was "
+            "read as CSV "
             "with a row "
             "for each joint, because the first row has times, so each further row is a joint");
   EXPECT_EQ(told(refusal_of("0.02 3 ( 1 2 )\n")),
-            "m.dat:1: the brackets hold 2 values, but n is 3 (read as mi-lib .zvs, because the "
+            "m.dat:1: the brackets hold 2 values, but n is 3 (the file was read as mi-lib .zvs, "
+            "because the "
             "rows have the form `dt n ( values )`");
   EXPECT_EQ(told(refusal_of("0.02 2 ( 1 2 )\n0.02 2 ( 1 2\n")),
-            "m.dat:2: the bracket ( is not closed, so the row was cut; copy the file again (read "
+            "m.dat:2: the bracket ( is not closed, so the row was cut; copy the file again (the "
+            "file was read "
             "as mi-lib .zvs, because the rows have the form `dt n ( values )`");
   EXPECT_TRUE(refusal_of("0.02 2 ( 1\n2 )\n0.02 2 ( 1\n0.02 2 ( 1 2 )\n")
                   .starts_with("m.dat:3: the bracket ( is not closed"));
@@ -301,9 +304,9 @@ TEST(MotionFormats, MistakesNameFileLineAndFormat) {
                 .find("/positions/0.0/l_knee/1: expected "),
             std::string::npos);
   const ImportOptions stated{.format = "webots"};
-  EXPECT_EQ(
-      refusal_of("#WEBOTS_MOTION,V3.0,l_knee\n", "m.dat", stated),
-      "m.dat:1: version 'V3.0' is unknown; Ayumi reads V1.0 and V1.1 (read as Webots .motion)");
+  EXPECT_EQ(refusal_of("#WEBOTS_MOTION,V3.0,l_knee\n", "m.dat", stated),
+            "m.dat:1: version 'V3.0' is unknown; Ayumi reads V1.0 and V1.1 (the file was read as "
+            "Webots .motion)");
   EXPECT_NE(refusal_of("0 0.1 0,2\n0.1 0.1 0.2\n0.2 0 0\n", "m.pos").find("not "),
             std::string::npos);
   EXPECT_NE(refusal_of("type: CompositeSeq\ncontent: BodyMotion\ncomponents:\n  - [ 1, 2\n")

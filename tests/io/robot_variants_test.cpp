@@ -88,7 +88,7 @@ TEST(RobotVariants, WhatIsNotReadIsNamed) {
   const std::string biped = test::UrdfBiped{}.text();
   has(error("a.xml", "<COLLADA version=\"1\"/>"), "<COLLADA> is not a robot");
   has(error("a.wrl", "#VRML V2.0 utf8\n"), "VRML");
-  has(error("a.urdf", std::string("\xff\xfe<\0r\0", 6)), "UTF-16 text; save it as UTF-8");
+  has(error("a.urdf", std::string("\xff\xfe<\0r\0", 6)), "UTF-16 text; save the file as UTF-8");
   has(error("a.stl", std::string("solid\0\0\0\0", 9)), "binary data");
   has(error("a.txt", "hello"), "Ayumi reads robots as");
   has(error("a.xacro", replaced(biped, "<link name", "<xacro:arm/><link name")), "expand it with");

@@ -63,7 +63,7 @@ void expect_one_line(const std::string& message, const std::string& what) {
   EXPECT_TRUE(std::all_of(message.begin(), message.end(),
                           [](unsigned char c) { return c >= ' ' && c < 127; }))
       << what << ": " << message;
-  EXPECT_TRUE(message.find("(read as ") != std::string::npos ||
+  EXPECT_TRUE(message.find("(the file was read as ") != std::string::npos ||
               message.find("import reads ") != std::string::npos ||
               message.find("; save ") != std::string::npos ||
               message.find("; cut the file") != std::string::npos ||
@@ -155,7 +155,7 @@ TEST_P(UnreadableMotions, AreRefusedInOneLineOrReadAsTheyWere) {
     const std::string wide = utf16(good, little), mark = little ? "\xFF\xFE" : "\xFE\xFF";
     for (const std::string& bytes : {wide, mark + wide})
       EXPECT_EQ(outcome_of(format(), bytes).message,
-                "folder/m.dat:1: this is UTF-16 text; save it as UTF-8");
+                "folder/m.dat:1: the file is UTF-16 text; save the file as UTF-8");
   }
   // A file that contains its content twice is not read as if it had only the first part.
   const Outcome twice = outcome_of(format(), good + good);

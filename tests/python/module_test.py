@@ -352,7 +352,7 @@ class Errors(unittest.TestCase):
                 (lambda: ayumi.robot_picture(robot, theta=np.full(len(robot.joints), nan)),
                  "every joint needs a finite number"),
                 (lambda: ayumi.walk_pattern(robot, cog_height=-1), "or 0 for the usual height"),
-                (lambda: ayumi.gains(robot, absorb=1), "absorbed share of the ZMP error of 1 ")):
+                (lambda: ayumi.gains(robot, absorb=1), "a short-term absorption of 1 ")):
             with self.assertRaisesRegex(ayumi.Error, words) as caught:
                 call()
             self.assertEqual(caught.exception.code, "usage")

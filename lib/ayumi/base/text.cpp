@@ -106,6 +106,11 @@ std::string wide_encoding(std::string_view text) {
   return "";
 }
 
+std::string wide_encoding_refusal(std::string_view text) {
+  const std::string wide = wide_encoding(text);
+  return wide.empty() ? "" : "the file is " + wide + " text; save the file as UTF-8";
+}
+
 std::string exact(double value) {
   char buffer[40];
   return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};

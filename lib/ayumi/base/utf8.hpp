@@ -18,6 +18,10 @@ size_t not_utf8_at(std::string_view text);
 /// of such a text, or only one byte of each character at its beginning is not 0. Otherwise "".
 std::string wide_encoding(std::string_view text);
 
+/// Why a text with two or four bytes for each character cannot be read, and what to do; "" for
+/// other texts. Every reader of text files refuses such a text with these words.
+std::string wide_encoding_refusal(std::string_view text);
+
 /// The text without the mark of UTF-8 at its beginning, and with line feeds at the ends of lines
 /// that have carriage returns (macOS before 10, Windows).
 std::string with_line_feeds(std::string_view text);

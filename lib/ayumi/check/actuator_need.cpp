@@ -85,10 +85,11 @@ std::string flight_words(const RobotModel& model, const CommandSeries& series,
   const auto rise = [](double duration) {
     return text::brief(1e3 * kGravity * duration * duration / 8, 2) + " mm";
   };
-  return least->where + " is too fast for a flight longer than " + text::brief(possible, 2) +
-         " s (a rise of " + rise(possible) +
-         ") with the legs in these postures, and the flight lasts " + text::brief(lasts, 3) +
-         " s (" + rise(lasts) + "); the stoops and other joints may allow less";
+  return least->where + " can move fast enough for a flight of at most " +
+         text::brief(possible, 2) + " s (a rise of " + rise(possible) +
+         ") with the legs in these postures, but the flight lasts " + text::brief(lasts, 3) +
+         " s (a rise of " + rise(lasts) +
+         "). The stoops and other joints may allow only a shorter flight";
 }
 
 ActuatorNeed need_of(const RobotModel& model, const CommandSeries& series,

@@ -517,7 +517,7 @@ std::vector<Mistake> likely_mistakes(const RobotModel& model, const Pattern& pat
     mistakes.push_back({.place = e.place,
                         .words = e.written + "; " + e.instead,
                         .explains_all = e.enough,
-                        .further = e.further});
+                        .round = e.round});
   const std::vector<Mistake> impossible = impossible_values(model, pattern);
   if (mistakes.empty()) mistakes = impossible;
   // If it is known why a value is impossible, the reason comes first, and then the value that is
@@ -554,9 +554,13 @@ Error with_mistakes(const Error& error, const Pattern& pattern,
   }
   const bool in_file = !pattern.file.empty() && error.place().file == pattern.file;
   std::string causes;
-  for (const Mistake& mistake : mistakes)
-    if (mistake.is_cause)
-      causes += (causes.empty() ? "" : mistake.further ? "; and " : "; or ") + mistake.text();
+  int round = 0;
+  for (const Mistake& mistake : mistakes) {
+    if (!mistake.is_cause) continue;
+    if (!causes.empty()) causes += mistake.round > round ? "; in addition, " : "; or ";
+    causes += mistake.text();
+    round = mistake.round;
+  }
   const std::string words = "likely cause: " + causes +
                             "; the first error is: " + (in_file ? error.words() : error.what());
   SourcePlace place = error.place();

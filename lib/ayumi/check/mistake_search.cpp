@@ -572,7 +572,7 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
             (looked_closer ? words_at_period(found, c.outcome) : result_words(found, c.outcome));
         c.hypothesis.says.enough = c.outcome.good();
         // The changes of the previous rounds are also needed.
-        c.hypothesis.says.further = round > 0;
+        c.hypothesis.says.round = round;
         if (round > 0) c.hypothesis.says.instead += together_with(changed);
         // A mistake that was named together with another change is enough only after that change.
         std::erase_if(result.found, [&](const Explanation& e) {

@@ -17,11 +17,13 @@
 namespace ayumi {
 
 struct Explanation {
-  std::string place;     ///< JSON pointer in the pattern's file
-  std::string written;   ///< the written value: "the right foot's x is 0.9 m"
-  std::string instead;   ///< the remedy: "with 0.09 m, ..., the pattern is consistent"
-  bool enough = false;   ///< whether the pattern is consistent with this change
-  bool further = false;  ///< whether changes that were named before are also needed
+  std::string place;    ///< JSON pointer in the pattern's file
+  std::string written;  ///< the written value: "the right foot's x is 0.9 m"
+  std::string instead;  ///< the remedy: "with 0.09 m, ..., the pattern is consistent"
+  bool enough = false;  ///< whether the pattern is consistent with this change
+  /// The changes of one round are alternatives. After the first round (0), one change of each
+  /// earlier round is also needed.
+  int round = 0;
 };
 
 /// Largest number of versions of the pattern that are sampled and checked in all rounds together.

@@ -431,7 +431,8 @@ std::string WrittenValue::elsewhere() const {
   }
   if (others.empty()) return "";
   if (others.size() > kListed)
-    return " here and in the " + std::to_string(others.size()) + " other places that have it";
+    return " here and in the " + std::to_string(others.size()) +
+           " other places that have this value";
   return " here and in " + text::join(others, ", ");
 }
 

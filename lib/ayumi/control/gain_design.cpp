@@ -120,8 +120,7 @@ DtadParams design_gains(double omega, const GainWishes& wishes, DtadParams param
   }
   if (wishes.absorb) {
     if (!(*wishes.absorb >= 0 && *wishes.absorb < 1))
-      refuse("an absorbed share of the ZMP error of", *wishes.absorb,
-             "it must be at least 0 and below 1");
+      refuse("a short-term absorption of", *wishes.absorb, "it must be at least 0 and below 1");
     params.zmp_gain = *wishes.absorb / (1 - *wishes.absorb);
   }
   if (wishes.return_time) {

@@ -67,7 +67,7 @@ namespace {
     for (const int dof : job.ik.coupled()) shared.push_back(job.model.dofs()[dof].name);
     fail(ErrorCode::bad_pattern, place,
          where + " foot is turned " + degrees(solution.turned) +
-             " away from its attitude (allowed: " + degrees(allowed) + "). " +
+             " away from its attitude, but at most " + degrees(allowed) + " are allowed. " +
              (shared.empty() ? "At this place, the legs cannot turn the sole as it is planned"
                              : "Both legs move with " + text::join(shared, ", ") +
                                    ", so the feet cannot turn relative to each other") +
@@ -76,12 +76,12 @@ namespace {
   }
   if (job.ik.lacks_joints() && !solution.knee_flipped)
     fail(ErrorCode::bad_pattern, place,
-         where + " foot is out of reach by " + millimetres(solution.missing) +
-             " (allowed: " + millimetres(allowed) +
-             ", because a leg has fewer than six joints). With level soles, such legs cannot "
-             "move the COG farther to the side. Make the COG sway less (shorten "
-             "the step period, or move the ZMP towards the other foot with new walk "
-             "--zmp-inwards), or lower the COG height");
+         where + " foot is out of reach by " + millimetres(solution.missing) + ", but at most " +
+             millimetres(allowed) +
+             " are allowed. A leg has fewer than six joints, so the COG cannot move farther to the "
+             "side while the soles are level. Make the COG sway less: shorten the step period, or "
+             "move the ZMP towards the other foot (new walk --zmp-inwards). Or lower the COG "
+             "height");
   const double height = sample.cog.z() - ground;
   const std::string remedy =
       std::string("; ") + (legs_are_folded(job.model, job.pattern, height) ? "raise" : "lower") +

@@ -65,7 +65,7 @@ void give_reasons(RepairState& state) {
                                  : "there are " + std::to_string(count - named) + " more errors");
   if (!state.cut_short_by.empty())
     result.reasons.push_back("the search stopped at its limit of " + state.cut_short_by +
-                             ", so it is not known whether a repair exists; the errors above are "
+                             ". So it is not known whether a repair exists. The errors above are "
                              "those of the given motion");
 }
 

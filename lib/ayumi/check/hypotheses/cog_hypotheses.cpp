@@ -362,7 +362,7 @@ void missing_flight_keys(const ExaminedPattern& of, std::vector<Hypothesis>& mad
         {Rank::missing,
          {of.phase_place(i),
           std::string("no keyframe gives the COG height at the ") + names[missing] + ", at " +
-              seconds(ends[missing]) + "; that of the " + names[1 - missing] + " is " +
+              seconds(ends[missing]) + "; the height at the " + names[1 - missing] + " is " +
               text::brief(height) + " m",
           "with a key of the same height there"},
          [t = ends[missing], height](Pattern& p) { keyframe_at(p, t).cog_height = height; }});

@@ -55,7 +55,7 @@ void turns(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
        {of.phase_place(second.front()),
         "the " + foot + " foot's step turns by " + of.angle(turn_of(of.pattern.phases[second[0]])) +
             " after the " + ahead + " foot has turned by " + of.angle(turn) +
-            "; \"turn\" counts from the other foot, so all steps turn the robot by " +
+            "; \"turn\" is the angle to the other foot, so all steps turn the robot by " +
             of.angle(sum),
         "with \"turn\" 0 in " + (n > 1 ? "the " + std::to_string(n) + " steps" : "the step") +
             " of the " + foot + " foot, which then " + (n > 1 ? "land" : "lands") +
@@ -93,7 +93,7 @@ void near_footholds(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
                 text::fixed(1e3 * std::abs(apart), 0) + " mm apart",
             "with \"to\" = [" + text::brief(place.x()) + ", " + text::brief(place.y()) + ", ...]" +
                 (has_later_place(of, i)
-                     ? ", and all later footholds moved by the same [" + text::brief(moved.x(), 3) +
+                     ? ", and all later footholds also moved by [" + text::brief(moved.x(), 3) +
                            ", " + text::brief(moved.y(), 3) + "] m,"
                      : "")},
            [i, moved](Pattern& p) {

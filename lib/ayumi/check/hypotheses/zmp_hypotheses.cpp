@@ -136,7 +136,7 @@ void all_zmp_keys(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
         std::string("the robot stands on the ") + name_of(stance_of(first.support)) +
             " foot, but " + of.key_place(wrong_zmp_keys(of, phases.front()).front()) +
             " puts the ZMP " + zmp_words(of, wrong_zmp_keys(of, phases.front()).front()) +
-            "; this is so in " + std::to_string(phases.size()) + " phases",
+            "; the ZMP is wrong in the same manner in " + std::to_string(phases.size()) + " phases",
         "with the ZMP under the foot that carries the robot in each of these phases"},
        [meant](Pattern& p) {
          for (const auto& [k, place] : meant) p.keyframes[k].zmp->place = place;
@@ -160,8 +160,8 @@ void zmp_sides(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
   if (wrong < 2 || 2 * wrong <= single) return;
   made.push_back({Rank::exchange,
                   {"/keyframes",
-                   "the keys put the ZMP under the left foot where the robot stands on the right "
-                   "foot, or the other way round; perhaps left and right were exchanged",
+                   "the keys put the ZMP under the foot that does not carry the robot; "
+                   "perhaps left and right were exchanged",
                    "with left and right exchanged in all ZMP keys"},
                   [](Pattern& p) {
                     for (Keyframe& key : p.keyframes) {

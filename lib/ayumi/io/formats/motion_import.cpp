@@ -125,7 +125,7 @@ std::string remedy(const MotionFormat* format, const ImportedMotion& motion,
   if (text && !named && !counts && has_decimal_commas(bytes))
     words += "; if the commas are decimal commas, write decimal points";
   if (!format) return words;
-  words += " (read as " + format->words;
+  words += " (the file was read as " + format->words;
   if (!motion.reason.empty()) words += ", because " + motion.reason;
   return words + ")";
 }
@@ -144,8 +144,8 @@ const MotionFormat& format_of(const std::string& bytes, MotionInput& source,
   if (options.rate != 0) require_within("the rate of the rows", options.rate, ImportOptions::kRate);
   if (options.smooth)
     require_within("the largest change by smoothing", *options.smooth, ImportOptions::kSmooth);
-  if (const std::string wide = text::wide_encoding(bytes); !wide.empty())
-    source.refuse(1, "this is " + wide + " text; save it as UTF-8");
+  if (const std::string refusal = text::wide_encoding_refusal(bytes); !refusal.empty())
+    source.refuse(1, refusal);
   const MotionFormat* format = nullptr;
   const bool text = bytes.find('\0') == std::string::npos;
   if (text) refuse_too_many(source, bytes);
@@ -240,7 +240,8 @@ void refuse_degrees(const MotionFile& motion, Eigen::Index column, const std::st
     if (std::abs(value) > most) most = std::abs(value);
   if (most > kNoAngle)
     fail(ErrorCode::bad_file, {file},
-         "column '" + name + "' reaches " + text::brief(most) + " rad, which no joint reaches; " +
+         "column '" + name + "' reaches " + text::brief(most) +
+             " rad, but no joint can turn so far; " +
              (motion.unit != MotionFile::Unit::of_format
                   ? "give --unit deg if the angles are in degrees"
                   : "this format holds radians, so correct the file"));

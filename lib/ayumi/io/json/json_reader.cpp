@@ -144,9 +144,9 @@ size_t place_of_zero(const std::string& bytes) {
 Json parse_json(const std::string& bytes, const std::string& file, ErrorCode code) {
   const bool blank =
       std::all_of(bytes.begin(), bytes.end(), [](unsigned char c) { return std::isspace(c); });
-  if (blank) fail(code, {file}, "the file is empty; it must hold JSON");
-  if (const std::string wide = text::wide_encoding(bytes); !wide.empty())
-    fail(code, {file}, "this is " + wide + " text; save it as UTF-8");
+  if (blank) fail(code, {file}, "the file is empty, but JSON is needed");
+  if (const std::string refusal = text::wide_encoding_refusal(bytes); !refusal.empty())
+    fail(code, {file}, refusal);
   Json document;
   DocumentBuilder builder(document);
   try {
@@ -156,7 +156,7 @@ Json parse_json(const std::string& bytes, const std::string& file, ErrorCode cod
     const std::string reason = reason_of(error.what());
     if (reason.find("UTF-8") != std::string::npos)
       fail_in_text(code, file, bytes, offset,
-                   "the text is not in the encoding UTF-8 here; save the file in UTF-8");
+                   "the text is not UTF-8 here (the file may be Latin-1); save the file as UTF-8");
     if (const auto slip = find_json_slip(bytes))
       fail_in_text(code, file, bytes, slip->at, slip->words, slip->in_number);
     fail_in_text(code, file, bytes, offset, reason);

@@ -130,7 +130,7 @@ std::string trunk_text(const RobotModel& model) {
   return remark("Trunk: its tilt decides whether the robot has fallen. Guess: " +
                 std::string(body == 0 ? "the root link, " : "") +
                 (model.has_soles() ? "the link that carries both legs."
-                                   : "because no legs were recognised.")) +
+                                   : "because no legs were recognized.")) +
          "  \"trunk_link\": " + json_text(name) + ",\n";
 }
 
@@ -194,7 +194,7 @@ std::string sole_in_words(const RobotModel& model, Side side) {
 std::string soles_text(const RobotModel& model, const RobotGuess& guess) {
   if (!model.has_soles())
     return remark(
-        "Soles: none was recognised, and without soles no motion can be made. State the link of "
+        "Soles: none was recognized, and without soles no motion can be made. State the link of "
         "each foot, the pose of its sole frame (under the ankle, x forward, z up) and the corners "
         "of its outline: \"soles\": {\"left\": {\"link\": ..., \"origin\": [x, y, z], \"polygon\": "
         "[[x, y], ...]}, \"right\": ...}");
@@ -273,7 +273,7 @@ std::string aliases_text(const RobotModel& model) {
   if (aliases.empty()) return "";
   std::string text = remark(
       "Aliases: other names of the joints in motion files. Guess: the joints of the legs are "
-      "recognised by their axes. Add the names that your motion files use.");
+      "recognized by their axes. Add the names that your motion files use.");
   text += "  \"aliases\": {\n";
   size_t left = aliases.size();
   for (const auto& [alias, joint] : aliases)
@@ -537,7 +537,7 @@ std::vector<std::string> to_do_list(const RobotModel& model, const RobotGuess& g
     items.push_back(guess.robot.missing_meshes.empty()
                         ? "State the soles of both feet; without them no motion can be made."
                         : "Find the missing meshes (see below) and run `ayumi init` again, because "
-                          "without them no soles were recognised; or state the soles of both feet. "
+                          "without them no soles were recognized; or state the soles of both feet. "
                           "Without soles no motion can be made.");
   } else {
     items.push_back(

@@ -316,7 +316,7 @@ void find_facing(const RobotModel& model, RobotGuess& guess) {
   const std::vector<Isometry3d> poses = body_poses(model, zero_posture(model));
   const std::vector<Foot> feet = find_feet(model, poses);
   if (feet.empty()) {
-    guess.facing_reason = {"no feet were recognised, so the robot is taken to face x",
+    guess.facing_reason = {"no feet were recognized, so the robot is taken to face x",
                            "that the robot faces x in the picture"};
     return;
   }
@@ -485,7 +485,7 @@ void find_soles(RobotGuess& guess) {
   const std::vector<Isometry3d> poses = body_poses(model, zero_posture(model));
   std::vector<Foot> feet = find_feet(model, poses);
   if (feet.empty()) {
-    robot.assumptions.push_back("no feet were recognised, so the robot has no soles");
+    robot.assumptions.push_back("no feet were recognized, so the robot has no soles");
     return;
   }
   if (poses[feet[0].body].translation().y() < poses[feet[1].body].translation().y())

@@ -70,8 +70,8 @@ bool has_robot_ending(const fs::path& path) {
 RobotFormat robot_format(const std::string& bytes, const fs::path& path) {
   std::string_view text = bytes;
   const std::string extension = robot_ending(path);
-  if (const std::string wide = text::wide_encoding(bytes); !wide.empty())
-    refuse_robot(path, "this is " + wide + " text; save it as UTF-8");
+  if (const std::string refusal = text::wide_encoding_refusal(bytes); !refusal.empty())
+    refuse_robot(path, refusal);
   // Binary data has a zero byte early on.
   if (text.substr(0, 1024).find('\0') != std::string_view::npos)
     refuse_robot(path, "this is binary data, and not the text of a robot");

@@ -78,8 +78,8 @@ std::string without_outer_cells(std::string_view text, bool first, bool last,
 
 std::string plain_table_text(const std::string& bytes, const std::string& file,
                              std::vector<std::string>* notes) {
-  if (const std::string wide = text::wide_encoding(bytes); !wide.empty())
-    fail(ErrorCode::bad_file, {file}, "this is " + wide + " text; save it as UTF-8");
+  if (const std::string refusal = text::wide_encoding_refusal(bytes); !refusal.empty())
+    fail(ErrorCode::bad_file, {file}, refusal);
   std::string text = bytes.starts_with("\xEF\xBB\xBF") ? bytes.substr(3) : bytes;
   const std::string_view head = first_row(text);
   if (head.empty() || head.front() == '{') return text;
