@@ -533,34 +533,79 @@ TEST(FirstSidecar, RefusesARobotThatHasOne) {
   EXPECT_THROW(first_sidecar(robot, robot), Error);
 }
 
-// In an earlier version, with the meshes of the legs missing, the hands were taken for feet, and
-// `init` failed because the COG was below them. What is missing is on the list.
-TEST(FirstSidecar, HandsAreNoFeetWhereTheShapesOfTheFeetAreMissing) {
-  const TemporaryFolder folder;
+// The text of a biped whose legs have meshes that do not exist, in the place of their shapes.
+std::string biped_without_meshes() {
   std::string text = UrdfBiped{}.text();
   for (const std::string side : {"l_", "r_"})
     for (const std::string link : {"thigh", "shank", "foot"}) {
       const size_t from = text.find("<link name=\"" + side + link);
       const size_t shape = text.find("<visual>", from), end = text.find("</link>", from);
-      ASSERT_LT(shape, end);
+      if (shape >= end) throw std::logic_error("the link has no shape");
       text.replace(
           shape, end - shape,
           "<visual><geometry><mesh filename=\"" + side + link + ".stl\"/></geometry></visual>");
     }
-  const FirstSidecar sidecar =
-      first_sidecar(folder.write("r.urdf", text).string(), folder.path() / "r");
-  EXPECT_TRUE(sidecar.robot.soles.empty());
+  return text;
+}
+
+// In an earlier version, with the meshes of the legs missing, the hands were taken for feet, and
+// `init` failed because the COG was below them. Later, such a robot had no soles. The feet of this
+// robot are boxes, so that their inertias give the true soles.
+TEST(FirstSidecar, TheInertiasOfFeetGiveTheSolesWhereTheMeshesAreMissing) {
+  const TemporaryFolder folder;
+  const RobotModel whole(read({.name = "whole"}, folder));
+  const std::string file = folder.write("r.urdf", biped_without_meshes()).string();
+  const FirstSidecar sidecar = first_sidecar(file, folder.path() / "r");
+  ASSERT_EQ(sidecar.robot.soles.size(), 2u);
+  EXPECT_TRUE(has_item(sidecar, "Measure the soles and state them: the feet have no shapes"));
+  EXPECT_TRUE(says(sidecar.text, "the feet have no shapes, so they are taken for boxes"));
+  const RobotModel model(load_robot_description(file));
+  for (const Side side : {Side::left, Side::right}) {
+    const Sole &found = model.sole(side), &real = whole.sole(side);
+    ASSERT_EQ(found.polygon.size(), real.polygon.size());
+    for (size_t i = 0; i < real.polygon.size(); ++i)
+      EXPECT_LT((found.polygon[i] - real.polygon[i]).norm(), 1e-6) << found.polygon[i].transpose();
+    EXPECT_LT((found.frame.translation() - real.frame.translation()).norm(), 1e-6);
+  }
   EXPECT_TRUE(std::any_of(sidecar.to_do.begin(), sidecar.to_do.end(), [](const std::string& item) {
     return item.find("6 meshes are missing and left out: ") != std::string::npos &&
            item.find("r_foot.stl") == std::string::npos &&
            item.find(" and 3 more, which `ayumi inspect` lists; ") != std::string::npos;
   }));
-  const RobotDescription read = load_robot_description((folder.path() / "r.urdf").string());
+  EXPECT_TRUE(std::any_of(model.description().assumptions.begin(),
+                          model.description().assumptions.end(), [](const std::string& all) {
+                            return all.find("l_thigh.stl of link l_thigh") != std::string::npos &&
+                                   all.find("r_foot.stl of link r_foot") != std::string::npos;
+                          }));
+}
+
+// DARwIn-OP's file has inertias of bodies of more than 1 m. Feet without shapes get the inertia of
+// a sphere with the density of water. The box of this inertia is a cube.
+TEST(FirstSidecar, FeetWithoutMeshesAndUsableInertiasHaveSmallSoles) {
+  const TemporaryFolder folder;
+  std::string text = biped_without_meshes();
+  for (const std::string side : {"l_", "r_"}) {
+    const size_t foot = text.find("<link name=\"" + side + "foot");
+    for (const std::string moment : {"ixx=\"", "iyy=\"", "izz=\""}) {
+      const size_t from = text.find(moment, foot) + moment.size();
+      text.replace(from, text.find('"', from) - from, "1");
+    }
+  }
+  const FirstSidecar sidecar =
+      first_sidecar(folder.write("r.urdf", text).string(), folder.path() / "r");
+  EXPECT_TRUE(has_item(sidecar, "Measure the soles and state them: the feet have no shapes"));
   EXPECT_TRUE(
-      std::any_of(read.assumptions.begin(), read.assumptions.end(), [](const std::string& all) {
-        return all.find("l_thigh.stl of link l_thigh") != std::string::npos &&
-               all.find("r_foot.stl of link r_foot") != std::string::npos;
-      }));
+      says(sidecar.text, "a link without shapes has that of a sphere with the density of water"));
+  EXPECT_TRUE(says(sidecar.text, "or those under \"links\" where this sidecar states them"));
+  const RobotModel model(sidecar.robot);
+  for (const Side side : {Side::left, Side::right}) {
+    ASSERT_EQ(model.sole(side).polygon.size(), 4u);
+    const double mass = model.bodies()[model.sole(side).body].inertia.mass;
+    const Eigen::Vector2d size = model.sole(side).polygon[2] - model.sole(side).polygon[0];
+    const double radius = std::cbrt(0.75 * mass / (std::numbers::pi * 1000));
+    EXPECT_NEAR(std::abs(size.x()), std::sqrt(6 * 0.4) * radius, 1e-6);
+    EXPECT_NEAR(std::abs(size.y()), std::sqrt(6 * 0.4) * radius, 1e-6);
+  }
 }
 
 // The feet are found even if a lower link exists that has no shape and does not belong to a leg,

@@ -486,7 +486,8 @@ std::string inertias_text(const RobotDescription& robot, const std::vector<std::
       "Inertias [kg m^2]: xx, xy, xz, yy, yz, zz about the centre of mass. The robot's file states "
       "placeholders here: inertias of bodies larger than these links, or inertias that no body can "
       "have. Guess: inertias of boxes with the extent of the links' shapes and the masses of the "
-      "file. Check these values, or state those of the CAD model.");
+      "file; a link without shapes has that of a sphere with the density of water. Check these "
+      "values, or state those of the CAD model.");
   text += "  \"links\": {\n";
   for (const LinkDescription& link : robot.links) {
     if (std::find(changed.begin(), changed.end(), link.name) == changed.end()) continue;
@@ -540,6 +541,10 @@ std::vector<std::string> to_do_list(const RobotModel& model, const RobotGuess& g
                           "without them no soles were recognized; or state the soles of both feet. "
                           "Without soles no motion can be made.");
   } else {
+    if (guess.soles_of_inertia)
+      items.push_back(
+          "Measure the soles and state them: the feet have no shapes, so the soles are those of "
+          "boxes with the feet's inertias, and every verdict about motions depends on them.");
     items.push_back(
         "Compare the outline of the soles with the real feet: " + sole_in_words(model, Side::left) +
         "; " + sole_in_words(model, Side::right) + ".");

@@ -57,6 +57,10 @@ constexpr double kSameHeight = 0.02;
 constexpr double kLargestSole = 1.0;
 // Smallest area of a sole [m^2]. Chosen: 1 mm by 1 mm.
 constexpr double kSmallestSole = 1e-6;
+// Longest side of a box that stands for a foot without shapes, as a share of the distance between
+// the highest and the lowest joint. Chosen: a foot of half the robot's height is a mistake of the
+// inertia; HOAP-1's foot measures a quarter.
+constexpr double kLargestFootBox = 0.5;
 // Largest number of corners of a sole. Chosen: each corner is a contact of the simulation; the
 // removed corners lie outside of what is left, by less than 2 % of the length of a round sole.
 constexpr size_t kMostCorners = 8;
@@ -164,6 +168,7 @@ struct Foot {
   int body = -1;
   Points points;  // points in the root frame, with every joint at 0
   double lowest = std::numeric_limits<double>::infinity();
+  bool of_inertia = false;  // the points are the corners of the box of the body's inertia
 };
 
 double touching_area(const Points& points, double lowest) {
@@ -192,6 +197,62 @@ int joints_above(const RobotModel& model, int body) {
   return count;
 }
 
+// The corners, in the root frame, of the box that is parallel to the axes of the root frame and has
+// the mass, the centre of mass and the second moments of the body. Empty if there is no such box.
+Points inertia_box(const Body& body, const Isometry3d& pose) {
+  const Inertia& inertia = body.inertia;
+  if (!(inertia.mass > 0)) return {};
+  const Eigen::Matrix3d tensor = pose.linear() * inertia.about_com * pose.linear().transpose();
+  // A side a of a box of even density has the second moment m a^2 / 12.
+  const Vector3d squares =
+      12 / inertia.mass * (Vector3d::Constant(0.5 * tensor.trace()) - tensor.diagonal());
+  if (!(squares.minCoeff() > 0)) return {};
+  const Vector3d half = 0.5 * squares.cwiseSqrt(), center = pose * inertia.com;
+  Points corners;
+  for (const double x : {-1, 1})
+    for (const double y : {-1, 1})
+      for (const double z : {-1, 1})
+        corners.push_back(center + half.cwiseProduct(Vector3d(x, y, z)));
+  return corners;
+}
+
+double highest_joint(const std::vector<Isometry3d>& poses) {
+  double highest = -std::numeric_limits<double>::infinity();
+  for (size_t body = 1; body < poses.size(); ++body)
+    highest = std::max(highest, poses[body].translation().z());
+  return highest;
+}
+
+// The two end bodies without any shape whose joints are the lowest of the robot, beside each other
+// at the same height. The points of the feet are the corners of the boxes of their inertias. Empty
+// if there are no such bodies, or if these boxes are too large for feet.
+std::vector<Foot> feet_without_shapes(const RobotModel& model, const std::vector<Isometry3d>& poses,
+                                      const std::vector<int>& bare) {
+  std::vector<int> bodies = bare;
+  const auto height = [&](int body) { return poses[body].translation().z(); };
+  std::stable_sort(bodies.begin(), bodies.end(),
+                   [&](int a, int b) { return height(a) < height(b); });
+  if (bodies.size() < 2) return {};
+  double lowest = std::numeric_limits<double>::infinity();
+  for (size_t body = 1; body < poses.size(); ++body)
+    lowest = std::min(lowest, height(static_cast<int>(body)));
+  const double tall = highest_joint(poses) - lowest;
+  const Vector3d between = poses[bodies[0]].translation() - poses[bodies[1]].translation();
+  if (height(bodies[1]) > lowest + kSameHeight * tall || between.head<2>().norm() < kApart)
+    return {};
+  std::vector<Foot> feet;
+  for (const int body : {bodies[0], bodies[1]}) {
+    Foot foot{body, inertia_box(model.bodies()[body], poses[body])};
+    if (foot.points.empty() ||
+        (foot.points.back() - foot.points.front()).maxCoeff() > kLargestFootBox * tall)
+      return {};
+    foot.lowest = lowest_of(foot.points);
+    foot.of_inertia = true;
+    feet.push_back(foot);
+  }
+  return feet;
+}
+
 // The two lowest end bodies that are beside each other. If a foot stands on more ground than the
 // toe that it carries, the foot is taken and not the toe. There are no feet if an end body without
 // any shape is lower and has as many joints above it as these bodies: then the shapes of the feet
@@ -201,10 +262,9 @@ std::vector<Foot> find_feet(const RobotModel& model, const std::vector<Isometry3
   for (const Body& body : model.bodies())
     if (body.parent >= 0) leaf[body.parent] = false;
   std::vector<Foot> ends;
-  double highest = -std::numeric_limits<double>::infinity();
+  const double highest = highest_joint(poses);
   std::vector<int> bare;  // end bodies that have no shape
   for (int body = 1; body < static_cast<int>(leaf.size()); ++body) {
-    highest = std::max(highest, poses[body].translation().z());
     if (!leaf[body]) continue;
     Foot foot{body, body_points(model, poses, body), 0};
     foot.lowest = lowest_of(foot.points);
@@ -234,10 +294,10 @@ std::vector<Foot> find_feet(const RobotModel& model, const std::vector<Isometry3
       const int joints = std::min(joints_above(model, a.body), joints_above(model, b.body));
       for (const int body : bare)
         if (poses[body].translation().z() < a.lowest && joints_above(model, body) >= joints)
-          return {};
+          return feet_without_shapes(model, poses, bare);
       return {a, b};
     }
-  return {};
+  return feet_without_shapes(model, poses, bare);
 }
 
 // End bodies that stand on the ground beside the feet, such as the other feet of a robot with four
@@ -531,8 +591,21 @@ void find_soles(RobotGuess& guess) {
     robot.assumptions.push_back(
         side + " sole: link " + sole.link + ", hull of " + std::to_string(sole.polygon.size()) +
         " corners, " + size_text(extent(sole)) +
-        ", around the points of the foot that are at most 1 mm above the ground");
+        (feet[0].of_inertia
+             ? ", the underside of the box that has the foot's mass and inertia, because the foot "
+               "has no shapes"
+             : ", around the points of the foot that are at most 1 mm above the ground"));
   robot.soles = soles;
+  if (feet[0].of_inertia) {
+    guess.soles_of_inertia = true;
+    guess.sole_reason = {
+        "the feet have no shapes, so they are taken for boxes of even density "
+        "with their masses, centres of mass and inertias (those of the robot's "
+        "file, or those under \"links\" where this sidecar states them); the "
+        "undersides of these boxes are the soles",
+        "height, length and width of both soles: measure them on the robot"};
+    return;
+  }
   const bool collisions = std::any_of(
       model.links().begin(), model.links().end(),
       [&](const Link& link) { return link.body == feet[0].body && !link.collisions.empty(); });

@@ -28,7 +28,8 @@ struct RobotGuess {
   RobotDescription robot;
   std::string facing = "x";  ///< direction in the URDF's root link; `robot` itself faces x
   GuessReason facing_reason, sole_reason, home_reason, servo_reason;
-  std::string rounded_soles;  ///< what to do about rounded soles; empty if the soles are flat
+  std::string rounded_soles;      ///< what to do about rounded soles; empty if the soles are flat
+  bool soles_of_inertia = false;  ///< the soles are those of boxes that have the feet's inertias
   /// What to do about other links that stand on the ground; empty if there are none.
   std::string more_feet;
   std::vector<PlaceholderLimits> placeholders;
@@ -40,7 +41,7 @@ struct RobotGuess {
 ///   to 0. Left and right, and so the front, follow from the names, else from the longer end of the
 ///   feet.
 /// - Soles: the hull of what lies within 1 mm of the ground, thinned to at most 8 corners from the
-///   inside.
+///   inside. Feet without shapes are taken for boxes that have their masses and inertias.
 /// - Home: bent knees, with the COG over the middle of the soles and all joints inside their
 /// limits.
 /// - Servos: full effort of each joint at an error of 0.2 rad, and for legs at least 20 m g z per
