@@ -285,7 +285,7 @@ class Page {
     byId("scrub").setAttribute("aria-valuetext", `${time.toFixed(2)} seconds, ${support}`);
     const mm = (name) => fixed(1000 * row[this.columns[name]], 1);
     byId("readout").textContent = `t ${time.toFixed(3)} s · ${support} · COG ${["x", "y", "z"].map((a) => mm("cog." + a)).join(", ")} mm · ` +
-      `ZMP ${["x", "y"].map((a) => mm("zmp." + a)).join(", ")} mm · f_z ${row[this.columns.fz].toFixed(1)} N`;
+      `ZMP ${row[this.columns.fz] > 0 ? ["x", "y"].map((a) => mm("zmp." + a)).join(", ") + " mm" : "none"} · f_z ${row[this.columns.fz].toFixed(1)} N`;
     if (this.viewer.playing) this.previewed = null;
     this.moveCursor();
     this.lanes.moved(time);
