@@ -1,7 +1,7 @@
 // Curves over time of the quantities that the reader chooses. Quantities of one unit share a panel.
 
 import { byId, element, fixed, refill, shape } from "./dom.js";
-import { rowAt } from "./series.js";
+import { rowAt, hasZmp } from "./series.js";
 
 const high = 84, top = 8, bottom = 6, letters = 11;
 const colors = ["#0b6fc2", "#c2570b", "#0a8754", "#9b2fae", "#b01e3c", "#6b6b00"];
@@ -37,8 +37,8 @@ export function levels(low, high_) {
   return values;
 }
 
-/// Whether a row has this quantity: in flight there is no ZMP, although the row still has a place.
-export const isKnown = (name, row, columns) => !name.startsWith("zmp.") || row[columns.fz] > 0;
+/// Whether a row has this quantity.
+export const isKnown = (name, row, columns) => !name.startsWith("zmp.") || hasZmp(row, columns);
 
 /// The parts of a curve between its gaps, which are null.
 export function partsOf(points) {
