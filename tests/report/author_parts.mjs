@@ -11,6 +11,7 @@ import * as parts from "../../lib/ayumi/report/page/parts.js";
 import * as edits from "../../lib/ayumi/report/page/edits.js";
 import { fieldsOf, missingFields, optionalField, optionsOf, parsePattern, valueAt } from "../../lib/ayumi/report/page/fields.js";
 import { nameAmongOthers, unitOf } from "../../lib/ayumi/report/page/inspector.js";
+import { isKnown, partsOf } from "../../lib/ayumi/report/page/curves.js";
 import { strain, colorOf, heightOf, worstIn } from "../../lib/ayumi/report/page/strip_colors.js";
 import { sideBySide, nearDifferences } from "../../lib/ayumi/report/page/text_difference.js";
 
@@ -703,4 +704,12 @@ test("a load is on the first link, and an offset is that of a joint that turns",
   assert.equal(parts.addOther("encoder_offset", 1, state)[0].value.joint, "l_knee");
   const { type, at, ...floor } = parts.addOther("floor", 1, state)[0].value, { at: time, ...motion } = parts.addFloorMotion(1, "deg")[0].value;
   assert.deepEqual([type, at, floor], ["floor", time, motion]);
+});
+
+test("in flight there is no ZMP, and its curve has a gap", () => {
+  const columns = { t: 0, fz: 1, "zmp.y": 2, "cog.y": 3 };
+  assert.equal(isKnown("zmp.y", [1.5, 1e-13, 0.01, 0], columns), false);
+  assert.equal(isKnown("cog.y", [1.5, 0, 0.01, 0], columns), true);
+  assert.equal(isKnown("zmp.y", [1.4, 80, 0.01, 0], columns), true);
+  assert.deepEqual(partsOf([null, [0, 1], [1, 1], null, null, [2, 3], null]), [[[0, 1], [1, 1]], [[2, 3]]]);
 });

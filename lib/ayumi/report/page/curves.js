@@ -1,7 +1,7 @@
 // Curves over time of the quantities that the reader chooses. Quantities of one unit share a panel.
 
 import { byId, element, fixed, refill, shape } from "./dom.js";
-import { rowAt } from "./series.js";
+import { rowAt, hasZmp } from "./series.js";
 
 const high = 84, top = 8, bottom = 6, letters = 11;
 const colors = ["#0b6fc2", "#c2570b", "#0a8754", "#9b2fae", "#b01e3c", "#6b6b00"];
@@ -35,6 +35,18 @@ export function levels(low, high_) {
   const values = [];
   for (let k = Math.ceil(low / step - 1e-9); k * step <= high_ + 1e-9; ++k) values.push(Number((k * step).toPrecision(6)));
   return values;
+}
+
+/// Whether a row has this quantity.
+export const isKnown = (name, row, columns) => !name.startsWith("zmp.") || hasZmp(row, columns);
+
+/// The parts of a curve between its gaps, which are null.
+export function partsOf(points) {
+  const parts = [[]];
+  for (const point of points)
+    if (point) parts.at(-1).push(point);
+    else if (parts.at(-1).length) parts.push([]);
+  return parts.filter((part) => part.length);
 }
 
 export class Curves {
@@ -126,7 +138,12 @@ export class Curves {
           for (let i = 0; i < series.rows; ++i) {
             const t = series.table[i * series.width];
             if (t < axis.from - 0.05 || t > axis.to + 0.05) continue;
-            const value = one.scale * series.table[i * series.width + column];
+            const row = series.table.subarray(i * series.width, (i + 1) * series.width);
+            if (!isKnown(one.name, row, series.columns)) {
+              points.push(null);
+              continue;
+            }
+            const value = one.scale * row[column];
             low = Math.min(low, value);
             most = Math.max(most, value);
             points.push([t, value]);
@@ -155,9 +172,10 @@ export class Curves {
           inner.append(shape("line", { class: "limit", x1: 0, x2: wide, y1: y(value), y2: y(value) }));
       }
       for (const { points, dashes, color } of lines)
-        inner.append(shape("polyline", { fill: "none", stroke: color, "stroke-width": dashes ? 1 : 1.6,
-          "stroke-dasharray": dashes, points: points.map(([t, value]) =>
-            `${(wide * axis.shareOf(t)).toFixed(1)},${y(value).toFixed(1)}`).join(" ") }));
+        for (const part of partsOf(points))
+          inner.append(shape("polyline", { fill: "none", stroke: color, "stroke-width": dashes ? 1 : 1.6,
+            "stroke-dasharray": dashes, points: part.map(([t, value]) =>
+              `${(wide * axis.shareOf(t)).toFixed(1)},${y(value).toFixed(1)}`).join(" ") }));
       inner.append(...words);  // above the curves, with a halo, so that no curve strikes them out
       svg.lastChild.replaceWith(inner);
       svg.querySelector("title").textContent = `${list.map((one) => one.label).join(", ")} in ${list[0].unit}` +
@@ -170,6 +188,7 @@ export class Curves {
     const row = rowAt(motion, time);
     for (const { list } of this.panels || [])
       for (const one of list)
-        one.value.textContent = `${fixed(one.scale * row[motion.columns[one.name]], 1)} ${one.unit}`;
+        one.value.textContent = isKnown(one.name, row, motion.columns)
+          ? `${fixed(one.scale * row[motion.columns[one.name]], 1)} ${one.unit}` : "none";
   }
 }

@@ -4,7 +4,7 @@
 import { Vector3 } from "three";
 import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
 import { fixed } from "./dom.js";
-import { rowAt } from "./series.js";
+import { rowAt, hasZmp } from "./series.js";
 import { Viewer, bodyOf } from "./viewer.js";
 
 const byId = (id) => document.getElementById(id);
@@ -65,7 +65,7 @@ function showValues(t, row, push) {
   scrub.setAttribute("aria-valuetext", t.toFixed(2) + " seconds, " + support);
   byId("readout").textContent = "t " + t.toFixed(3) + " s · " + support + " · COG " +
     place("cog", row, ["x", "y", "z"]) + " · ZMP " +
-    (row[columns.fz] > 0 ? place("zmp", row, ["x", "y"]) : "none") +
+    (hasZmp(row, columns) ? place("zmp", row, ["x", "y"]) : "none") +
     " · f_z " + digits(row[columns.fz]) + " N";
   byId("push-now").textContent = push ? "push " + push.text : "";
 }

@@ -50,3 +50,10 @@ export function convexHull(points) {
   };
   return sorted.length < 3 ? sorted : [...half(sorted), ...half([...sorted].reverse())];
 }
+
+// Vertical force below which there is no ZMP [N]. Definition: it is shown as 0.0 N; in flight, the
+// force of a row differs from 0 by rounding.
+const noForce = 0.05;
+
+/// Whether a row has a ZMP. In flight there is none, although the row still has a place.
+export const hasZmp = (row, columns) => row[columns.fz] >= noForce;
