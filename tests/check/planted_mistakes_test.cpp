@@ -918,46 +918,6 @@ TEST(PlantedMistakes, AFootIsTurnedAboutBothAxes) {
   EXPECT_TRUE(is_consistent(kick, options_of(kick))) << texts_of(found);
 }
 
-// Shoulders that are 35 mm nearer to each other: a forearm meets the thigh of a kick, although
-// every value of the pattern is possible. Either the arms or the legs can make room.
-TEST(PlantedMistakes, RoomForBodiesThatMeetIsNamed) {
-  RobotDescription description = small().description();
-  for (JointDescription& joint : description.joints)
-    if (joint.name.ends_with("_shoulder_pitch"))
-      joint.origin.translation().y() += joint.name.starts_with("l") ? -0.035 : 0.035;
-  const RobotModel narrow(description);
-  const Pattern kick = right_kick(
-      0.24, {{2.0, Foothold{{-0.02, -0.039, 0.02}}}, {2.4, Foothold{{0.03, -0.039, 0.02}}}});
-  const CheckOptions options = options_of(kick);
-  const auto is_possible = [&](const Pattern& pattern) {
-    return check_consistency(narrow, sample(narrow, pattern), options).consistent;
-  };
-  EXPECT_FALSE(is_possible(kick));
-  const std::string found = texts_of(likely_mistakes(narrow, kick, options));
-  std::smatch arms, zmp;
-  ASSERT_TRUE(std::regex_search(
-      found, arms,
-      std::regex("/keyframes/0: bodies meet while the arms hang in the home posture; with the "
-                 "arms farther outwards \\(\"joints\": \\{\"r_shoulder_roll\": (-[0-9.]+), "
-                 "\"l_shoulder_roll\": ([0-9.]+)\\} in this key\\), the pattern is consistent")))
-      << found;
-  Pattern outwards = kick;
-  outwards.keyframes[0].joints = {{"r_shoulder_roll", std::stod(arms[1]) * kDegree},
-                                  {"l_shoulder_roll", std::stod(arms[2]) * kDegree}};
-  EXPECT_TRUE(is_possible(outwards)) << found;
-  ASSERT_TRUE(std::regex_search(
-      found, zmp,
-      std::regex("/keyframes/1: the keys put the ZMP in the middle of one sole, .* nearer to the "
-                 "other foot \\(\"zmp\": \\[([0-9.]+), ([0-9.]+)\\] in /keyframes/1 and "
-                 "/keyframes/6\\), the pattern is consistent")))
-      << found;
-  Pattern nearer = kick;
-  for (const size_t key : {1u, 6u})
-    nearer.keyframes[key].zmp =
-        ZmpKey{ZmpKey::Place::point, {std::stod(zmp[1]), std::stod(zmp[2])}};
-  EXPECT_TRUE(is_possible(nearer)) << found;
-}
-
 // Two keys are too far out, so that no single one of them is enough.
 TEST(PlantedMistakes, AllKeysOfASwingAreNamedTogether) {
   Pattern kick = right_kick(0.235, {{2.0, Foothold{{0, -0.12, 0.03}, {-30 * kDegree, 0, 0}}},

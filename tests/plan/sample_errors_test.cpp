@@ -199,30 +199,6 @@ TEST(SampleErrors, Tables) {
                {"'l_shoulder' has keys too; keep the keys or the column"});
 }
 
-// Legs without a roll of the ankle keep the COG between the feet: slow motions on one foot are
-// impossible, whatever the author changes.
-TEST(SampleErrors, ARobotThatCannotRestOnOneFootIsToldSo) {
-  RobotDescription description = test::biped_description();
-  for (JointDescription& joint : description.joints)
-    if (joint.name.ends_with("ankle_roll")) joint.type = JointType::fixed;
-  for (auto& [side, sole] : description.soles)
-    for (Eigen::Vector2d& corner : sole.polygon) corner.y() *= 0.2;  // the trunk leans 15 mm aside
-  const RobotModel model(description);
-  Pattern pattern = stand_pattern(model, 3);
-  pattern.keyframes.assign(2, Keyframe());
-  pattern.keyframes[0].t = 0.5;
-  pattern.keyframes[0].zmp = ZmpKey{ZmpKey::Place::center};
-  pattern.keyframes[1].t = 2;
-  pattern.keyframes[1].zmp = ZmpKey{ZmpKey::Place::left};
-  try {
-    sample(model, pattern, {.dt = 0.005});
-    ADD_FAILURE();
-  } catch (const Error& error) {
-    expect_words(error.what(), {"the COG is ", " mm outside both soles", "cannot rest on one foot",
-                                "only quick steps"});
-  }
-}
-
 TEST(SampleErrors, TimesAndWeightsOfKeys) {
   expect_words(message_of([](Pattern& p) { p.keyframes[0].t = -0.5; }),
                {"/keyframes/0", "the key is at -0.5 s, but key times begin at 0 s"});

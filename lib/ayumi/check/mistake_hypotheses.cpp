@@ -10,7 +10,6 @@
 #include "ayumi/check/hypotheses/exchange_hypotheses.hpp"
 #include "ayumi/check/hypotheses/foothold_hypotheses.hpp"
 #include "ayumi/check/hypotheses/part_hypotheses.hpp"
-#include "ayumi/check/hypotheses/room_hypotheses.hpp"
 #include "ayumi/check/hypotheses/swing_hypotheses.hpp"
 #include "ayumi/check/hypotheses/time_hypotheses.hpp"
 #include "ayumi/check/hypotheses/unit_hypotheses.hpp"
@@ -94,9 +93,6 @@ std::vector<Hypothesis> Hypotheses::of(Kind kind) const {
                       *examined_);
     case Kind::supports:
       return found_by({hypotheses::zmp_keys}, *examined_);
-    case Kind::room:
-      if (!examined_->found.bodies_meet) return {};
-      return found_by({hypotheses::arms_aside, hypotheses::lesser_shifts}, *examined_);
     case Kind::times:
       return found_by(
           {unequal_blocks, hypotheses::ground_heights, hypotheses::turns, hypotheses::level_feet,

@@ -42,8 +42,6 @@ class Hypotheses {
     units,
     /// Keys of the ZMP under a foot that does not carry the robot. These are few.
     supports,
-    /// More room for bodies that meet. These are few, and the search may end before later kinds.
-    room,
     times,
     /// Parts that differ from similar ones in the same pattern, or contradict another part.
     irregular,

@@ -103,21 +103,18 @@ class Search {
       bool values = false;  ///< whether the written values are examined first
       bool last = false;    ///< whether the stage is needless if anything helps
     };
-    static const std::vector<Stage> usual = {{Rank::unit, Kind::units},
-                                             {Rank::unit, Kind::supports},
-                                             {Rank::unit, Kind::room},
-                                             {Rank::unit, Kind::times, true},
-                                             {Rank::slip, Kind::exchanges},
-                                             {Rank::sign, Kind::missing},
-                                             {Rank::amount, Kind::nearer},
-                                             {Rank::amount, Kind::paces},
-                                             {Rank::amount, Kind::small_swings, false, true}};
+    static const std::vector<Stage> usual = {
+        {Rank::unit, Kind::units},       {Rank::unit, Kind::supports},
+        {Rank::unit, Kind::times, true}, {Rank::slip, Kind::exchanges},
+        {Rank::sign, Kind::missing},     {Rank::amount, Kind::nearer},
+        {Rank::amount, Kind::paces},     {Rank::amount, Kind::small_swings, false, true}};
     // For slight errors, a hypothesis of another sign, digit or foot is not tried unless something
     // in the pattern speaks for it.
-    static const std::vector<Stage> slight = {
-        {Rank::unit, Kind::units},           {Rank::unit, Kind::room},
-        {Rank::unit, Kind::irregular, true}, {Rank::amount, Kind::nearer},
-        {Rank::amount, Kind::paces},         {Rank::amount, Kind::small_swings, false, true}};
+    static const std::vector<Stage> slight = {{Rank::unit, Kind::units},
+                                              {Rank::unit, Kind::irregular, true},
+                                              {Rank::amount, Kind::nearer},
+                                              {Rank::amount, Kind::paces},
+                                              {Rank::amount, Kind::small_swings, false, true}};
     const std::vector<Stage>& stages = found_.slight ? slight : usual;
     for (; stage_ < stages.size(); ++stage_) {
       if (enough(stages[stage_].reached) || (stages[stage_].last && !chosen().empty())) break;

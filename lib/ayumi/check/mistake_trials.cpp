@@ -107,7 +107,6 @@ TrialOutcome Trials::of(const Pattern& pattern, bool exact) const {
       ++outcome.findings;
       outcome.slight = outcome.slight && is_slight(model_, f);
       if (f.severity != Severity::error) continue;
-      outcome.bodies_meet = outcome.bodies_meet || f.kind == FindingKind::self_collision;
       outcome.of_table = outcome.of_table && needs_servo_period(f.kind);
       if (outcome.errors++ < kFirstErrors) outcome.windows.push_back({f.begin, f.end});
     }

@@ -35,9 +35,8 @@ struct TrialOutcome {
   /// Set by exactly() if it finds errors: a quick trial finds none of them, because they only show
   /// at the servo's own period.
   bool table_alone = false;
-  bool of_table = false;     ///< all errors are about the table for the robot
-  bool bodies_meet = false;  ///< one of the errors is that bodies of the robot overlap
-  bool slight = false;       ///< all errors and what follows from them are slight
+  bool of_table = false;  ///< all errors are about the table for the robot
+  bool slight = false;    ///< all errors and what follows from them are slight
 
   bool good() const { return errors == 0; }
   bool touches(double begin, double end) const {

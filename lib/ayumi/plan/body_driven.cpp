@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <mutex>
 #include <numbers>
 #include <span>
@@ -8,7 +7,6 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/math/elementary.hpp"
-#include "ayumi/math/polygon.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/motion/differentiate.hpp"
@@ -53,23 +51,6 @@ Eigen::Matrix3d trunk_attitude(const SampleJob& job, double t,
 
 namespace {
 
-/// What a robot cannot do whose COG goes no farther to the side than here: a sentence, or nothing
-/// if the COG is above a sole.
-std::string rest_words(const SampleJob& job, double t, const Vector3d& cog) {
-  double beside = std::numeric_limits<double>::infinity();
-  for (const Side side : {Side::left, Side::right}) {
-    const Eigen::Isometry3d foot = job.feet.pose(side, t);
-    std::vector<Eigen::Vector2d> corners;
-    for (const Eigen::Vector2d& corner : job.model.sole(side).polygon)
-      corners.push_back((foot * Vector3d(corner.x(), corner.y(), 0)).head<2>());
-    beside = std::min(beside, -ConvexPolygon(corners).margin(cog.head<2>()));
-  }
-  if (beside <= 0) return "";
-  return "Here the COG is " + millimetres(beside) +
-         " outside both soles, so the robot cannot rest on one foot with its feet at these places: "
-         "a kick or a slow step is not possible, only quick steps are. ";
-}
-
 [[noreturn]] void complain_reach(const SampleJob& job, double t, const CommandSample& sample,
                                  const PostureSolution& solution) {
   const SourcePlace place = place_of_phase(job.pattern, job.feet.phase(t));
@@ -97,11 +78,10 @@ std::string rest_words(const SampleJob& job, double t, const Vector3d& cog) {
     fail(ErrorCode::bad_pattern, place,
          where + " foot is out of reach by " + millimetres(solution.missing) + ", but at most " +
              millimetres(allowed) +
-             " are allowed. A leg has fewer than six joints, so the COG cannot move farther to the "
-             "side while the soles are level. " +
-             rest_words(job, t, sample.cog) +
-             "Make the COG sway less: shorten the step period, or move the ZMP towards the other "
-             "foot (new walk --zmp-inwards). Or lower the COG height");
+             " are allowed. A leg has fewer than six joints, so with level soles the COG cannot "
+             "move as far to the side as with six joints. Lower the COG height, or make the COG "
+             "sway less: shorten the step period, or move the ZMP towards the other foot (new walk "
+             "--zmp-inwards)");
   const double height = sample.cog.z() - ground;
   const std::string remedy =
       std::string("; ") + (legs_are_folded(job.model, job.pattern, height) ? "raise" : "lower") +
