@@ -243,7 +243,7 @@ KNOWN = [
             r"^/defaults/cog_height.*nearly straight"),
     Mistake("knees nearly straight at lift-off", "jump", straight_knees,
             r"^/keyframes/[23]: the COG height is 0.262 m", ("hoap1",)),
-    Mistake("a COG segment too long for its stoop", "jump", long_segment,
+    Mistake("too much time between the COG key of the stoop and the lift-off", "jump", long_segment,
             r"^/keyframes/1: t is 1.1 s.*segment", ("hoap1",)),
     Mistake("left and right exchanged in a phase", "walk", sides_of_phase,
             r"^/phases/3: support is left .*exchanged"),

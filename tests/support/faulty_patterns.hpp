@@ -109,7 +109,7 @@ inline FaultyPattern faulty_pattern(std::uint64_t seed) {
                  width);
       break;
     case 1:
-      made.fault = "a joint near its speed";
+      made.fault = "a joint near its speed limit";
       move_joint(hoap1(), table, joint, sign * size_of(dice.between(0.75, 1.02) * limit, width),
                  center, width);
       break;
@@ -121,7 +121,7 @@ inline FaultyPattern faulty_pattern(std::uint64_t seed) {
           center, dice.between(0.5, 0.8));
       break;
     case 3:
-      made.fault = "a joint at its range";
+      made.fault = "a joint at the limit of its range";
       move_joint(
           hoap1(), table, joint,
           sign * (soft_distance(joint, table.theta(0, column), sign) + dice.between(-0.004, 0.001)),
