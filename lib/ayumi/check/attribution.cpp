@@ -435,8 +435,8 @@ const Condition kTorqueOfLeg = {"the joint belongs to a leg",
                                 }};
 
 const Condition kHeldByFriction = {
-    "with the friction coefficient that the motion needs, the yaw moment would be at most twice "
-    "its limit",
+    "the yaw moment is at most twice its limit, if this limit is computed with the friction "
+    "coefficient that the motion needs",
     [](Scene& scene, int i, int j, const Interval&) {
       const double more = scene.of(i).value / scene.of(i).limit;
       return scene.of(j).value <= kArmFactor * more * scene.of(j).limit;
