@@ -128,7 +128,7 @@ inline FaultyPattern faulty_pattern(std::uint64_t seed) {
           center, dice.between(0.4, 0.8));
       break;
     case 4:
-      made.fault = "the ZMP outside";
+      made.fault = "the ZMP outside the support";
       sway_base(hoap1(), table, {0, sign * dice.between(0.01, 0.03), 0}, center,
                 dice.between(0.4, 0.7));
       motion_alone(table);
