@@ -334,7 +334,7 @@ def pushes_moderate():
 @table("pushes/walks")
 def pushes_walks():
     lines = head("walk", "steps as planned [B]", "`step=1` [B]", "cases lower with `step=1`",
-                 "of them by more than 0.06 B")
+                 "of these cases, lower by more than 0.06 B")
     count = [0, 0, 0]
     for name, robot, words in [
         ("forward, as `hoap1_walk`", "hoap1", []),
