@@ -108,20 +108,29 @@ TEST(Resolver, AKneeAtItsStopIsHeld) {
   EXPECT_TRUE(knee);
 }
 
-// While one foot swings and a fast turn of the trunk brings a hip to its position limit, each joint
-// keeps a rate at which it can stop before its limit with the bounded deceleration.
-TEST(ReferenceBody, JointsBrakeBeforeTheirPositionLimits) {
+/// What the joints do while the trunk turns to the side until a hip is at its position limit, with
+/// a deceleration before the limits of at most `braking`.
+struct TurnToLimit {
+  double excess = 0;  ///< largest excess of the way to a stop over the room to the limit [rad]
+  double nearest = 1, largest_share = 0;
+  bool brakes = false, arrives = false;  ///< what the notes say
+};
+
+TurnToLimit turn_to_limit(Support support, double braking, double planned_rate = 0) {
   Standing robot(0.8);
   const int n = robot.model.dof_count();
-  const double dt = 0.001, z = 0.2, braking = 5 * 9.81 / z;
+  const double dt = 0.001, z = 0.2;
   ReferenceBody body(robot.model, robot.limits, dt, robot.command.state, robot.command.state.theta);
-  robot.command.support = Support::left;
+  robot.command.support = support;
+  for (int j = 0; j < n; ++j)
+    if (robot.model.dofs()[j].name.find("hip_roll") != std::string::npos)
+      robot.command.state.dtheta[j] = planned_rate;
   UpperBodyTurn turn;
   turn.joints.setZero(n);
   turn.joint_rates.setZero(n);
   turn.lean_rate.x() = 1.5;
   Eigen::VectorXd before = robot.command.state.theta;
-  double nearest = 1, largest_share = 0;
+  TurnToLimit result;
   for (int k = 0; k < 1000; ++k) {
     ControlOutput out;
     turn.lean.x() = turn.lean_rate.x() * dt * k;
@@ -133,14 +142,62 @@ TEST(ReferenceBody, JointsBrakeBeforeTheirPositionLimits) {
       const double rate = (body.state().theta[j] - before[j]) / dt;
       const double room = rate > 0 ? dof.upper - before[j] : before[j] - dof.lower;
       const double needed = std::abs(rate) * dt + rate * rate / (2 * braking);
-      EXPECT_LE(needed, room + 1e-9) << dof.name << ", tick " << k;
-      if (std::abs(rate) > 0.5) largest_share = std::max(largest_share, needed / room);
-      nearest = std::min(nearest, room - std::abs(rate) * dt);
+      result.excess = std::max(result.excess, needed - room);
+      if (std::abs(rate) > 0.5)
+        result.largest_share = std::max(result.largest_share, needed / room);
+      result.nearest = std::min(result.nearest, room - std::abs(rate) * dt);
     }
     before = body.state().theta;
+    for (const std::string& note : out.notes) {
+      result.brakes |= note.find("hip_roll brakes before its position limit") != std::string::npos;
+      result.arrives |= note.find("hip_roll is at its position limit") != std::string::npos;
+    }
   }
-  EXPECT_LT(nearest, 0.002) << "a joint came to its limit";
-  EXPECT_GT(largest_share, 0.9) << "a fast joint came near the limit";
+  return result;
+}
+
+// While one foot swings, each joint keeps a rate at which it can stop before its limit with the
+// bounded deceleration. While both feet stand, it reaches the limit at full speed. A joint whose
+// plan moves it towards the limit follows its plan.
+TEST(ReferenceBody, JointsBrakeBeforeTheirPositionLimits) {
+  const double braking = 5 * 9.81 / 0.2;
+  const TurnToLimit one = turn_to_limit(Support::left, braking);
+  EXPECT_LT(one.excess, 1e-9);
+  EXPECT_LT(one.nearest, 0.002) << "a joint came to its limit";
+  EXPECT_GT(one.largest_share, 0.9) << "a fast joint came near the limit";
+  EXPECT_TRUE(one.brakes);
+  const TurnToLimit both = turn_to_limit(Support::both, braking);
+  EXPECT_GT(both.excess, 0.001);
+  EXPECT_FALSE(both.brakes);
+  EXPECT_TRUE(both.arrives);
+  // The hips turn towards their lower limits.
+  EXPECT_GT(turn_to_limit(Support::left, braking, -2).excess, 0.001);
+}
+
+// A joint beyond one of its limits is brought back in one tick, at either end.
+TEST(Resolver, AJointBeyondItsLimitReturnsAtOnce) {
+  Standing robot(0.8);
+  const int n = robot.model.dof_count();
+  int knee = -1;
+  for (int j = 0; j < n; ++j)
+    if (robot.model.dofs()[j].name == "l_knee") knee = j;
+  ASSERT_GE(knee, 0);
+  for (const bool above : {true, false}) {
+    SCOPED_TRACE(above);
+    const Dof& dof = robot.model.dofs()[knee];
+    RobotState reference = robot.command.state;
+    reference.theta[knee] = above ? dof.upper + 0.05 : dof.lower - 0.05;
+    RobotData data(robot.model);
+    ActuatorLimits fast = robot.limits;
+    fast.speed.setConstant(1e4);
+    ResolverOptions options;
+    options.braking = 200;
+    const Resolution r =
+        resolve(robot.model, fast, reference, data, Side::left, Vector3d::Zero(), robot.command,
+                robot.command, 0.001, robot.model.joint_weight(), options);
+    EXPECT_NEAR(reference.theta[knee] + 0.001 * r.dtheta[knee], above ? dof.upper : dof.lower,
+                1e-9);
+  }
 }
 
 // A trunk that tilts to the side, with the COG and the soles at rest, turns until a hip is at its

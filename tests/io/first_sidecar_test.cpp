@@ -608,6 +608,52 @@ TEST(FirstSidecar, FeetWithoutMeshesAndUsableInertiasHaveSmallSoles) {
   }
 }
 
+// A robot without shapes whose limbs hang down from its base or from an arm of two joints.
+std::string limbs_without_shapes(int limbs, int joints, bool on_an_arm) {
+  const std::string inertial =
+      "<inertial><origin xyz=\"0 0 -0.02\"/><mass value=\"0.2\"/><inertia ixx=\"1e-4\" "
+      "iyy=\"1e-4\" "
+      "izz=\"1e-4\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial>";
+  std::string text = "<robot name=\"limbs\"><link name=\"base\">" + inertial + "</link>";
+  const auto add = [&](const std::string& parent, const std::string& link, double x, double y,
+                       double z) {
+    text += "<link name=\"" + link + "\">" + inertial + "</link><joint name=\"j_" + link +
+            "\" type=\"revolute\"><parent link=\"" + parent + "\"/><child link=\"" + link +
+            "\"/><origin xyz=\"" + std::to_string(x) + " " + std::to_string(y) + " " +
+            std::to_string(z) +
+            "\"/><axis xyz=\"0 1 0\"/><limit lower=\"-2\" upper=\"2\" effort=\"20\" "
+            "velocity=\"8\"/></joint>";
+  };
+  if (on_an_arm) {
+    add("base", "upper", 0, 0, 0);
+    add("upper", "lower", 0, 0, -0.2);
+  }
+  for (int limb = 0; limb < limbs; ++limb) {
+    std::string parent = on_an_arm ? "lower" : "base";
+    for (int joint = 0; joint < joints; ++joint) {
+      const std::string link = "limb" + std::to_string(limb) + "_" + std::to_string(joint);
+      if (joint == 0)
+        add(parent, link, limb < 2 ? 0.1 : -0.1, limb % 2 == 0 ? 0.1 : -0.1, on_an_arm ? -0.2 : 0);
+      else
+        add(parent, link, 0, 0, -0.2);
+      parent = link;
+    }
+  }
+  return text + "</robot>";
+}
+
+// Without shapes, two of the feet of a robot with four legs, and fingers of an arm that hangs down,
+// are not the feet of a robot with two legs.
+TEST(FirstSidecar, FeetOfFourLegsAndFingersGetNoSoles) {
+  const TemporaryFolder folder;
+  const auto soles = [&](const std::string& name, const std::string& text) {
+    return first_sidecar(folder.write(name, text).string(), folder.path() / "r").robot.soles.size();
+  };
+  EXPECT_EQ(soles("two.urdf", limbs_without_shapes(2, 4, false)), 2u);
+  EXPECT_EQ(soles("four.urdf", limbs_without_shapes(4, 4, false)), 0u);
+  EXPECT_EQ(soles("fingers.urdf", limbs_without_shapes(2, 1, true)), 0u);
+}
+
 // The feet are found even if a lower link exists that has no shape and does not belong to a leg,
 // such as the end of a tether.
 TEST(FirstSidecar, ALowLinkWithoutAShapeHidesNoFeet) {

@@ -46,6 +46,7 @@ struct ResolverOptions {
   double speed_share = 0.98;    ///< share of a joint's speed limit that may be used
   /// Deceleration with which a joint that turns brakes before its position limit [rad/s^2], and a
   /// joint that slides [m/s^2]. If infinite, a joint stops in one tick when it is at the limit.
+  /// ReferenceBody sets both in each tick.
   double braking = std::numeric_limits<double>::infinity();
   double sliding_braking = std::numeric_limits<double>::infinity();
   UpperBodyTurn turn = {};  ///< turn of the trunk and the arms relative to their command

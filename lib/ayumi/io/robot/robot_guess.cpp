@@ -61,6 +61,9 @@ constexpr double kSmallestSole = 1e-6;
 // the highest and the lowest joint. Chosen: a foot of half the robot's height is a mistake of the
 // inertia; HOAP-1's foot measures a quarter.
 constexpr double kLargestFootBox = 0.5;
+// Fewest joints of a leg whose foot has no shape. Chosen: a hip, a knee and an ankle; fingers of a
+// hand have fewer joints of their own.
+constexpr int kFewestLegJoints = 3;
 // Largest number of corners of a sole. Chosen: each corner is a contact of the simulation; the
 // removed corners lie outside of what is left, by less than 2 % of the length of a round sole.
 constexpr size_t kMostCorners = 8;
@@ -197,6 +200,13 @@ int joints_above(const RobotModel& model, int body) {
   return count;
 }
 
+// Number of joints between a body and the nearest body that carries the other one, too.
+int own_joints(const RobotModel& model, int body, int other) {
+  int count = 0;
+  for (int i = body; i > 0 && !is_above(model, i, other); i = model.bodies()[i].parent) ++count;
+  return count;
+}
+
 // The corners, in the root frame, of the box that is parallel to the axes of the root frame and has
 // the mass, the centre of mass and the second moments of the body. Empty if there is no such box.
 Points inertia_box(const Body& body, const Isometry3d& pose) {
@@ -225,7 +235,8 @@ double highest_joint(const std::vector<Isometry3d>& poses) {
 
 // The two end bodies without any shape whose joints are the lowest of the robot, beside each other
 // at the same height. The points of the feet are the corners of the boxes of their inertias. Empty
-// if there are no such bodies, or if these boxes are too large for feet.
+// if there are no such bodies, if further ones are as low (the robot has more than two legs), if
+// their own joints are too few for legs, or if these boxes are too large for feet.
 std::vector<Foot> feet_without_shapes(const RobotModel& model, const std::vector<Isometry3d>& poses,
                                       const std::vector<int>& bare) {
   std::vector<int> bodies = bare;
@@ -238,7 +249,11 @@ std::vector<Foot> feet_without_shapes(const RobotModel& model, const std::vector
     lowest = std::min(lowest, height(static_cast<int>(body)));
   const double tall = highest_joint(poses) - lowest;
   const Vector3d between = poses[bodies[0]].translation() - poses[bodies[1]].translation();
-  if (height(bodies[1]) > lowest + kSameHeight * tall || between.head<2>().norm() < kApart)
+  const double level = lowest + kSameHeight * tall;
+  if (height(bodies[1]) > level || between.head<2>().norm() < kApart) return {};
+  if (bodies.size() > 2 && height(bodies[2]) <= level) return {};
+  if (std::min(own_joints(model, bodies[0], bodies[1]), own_joints(model, bodies[1], bodies[0])) <
+      kFewestLegJoints)
     return {};
   std::vector<Foot> feet;
   for (const int body : {bodies[0], bodies[1]}) {
