@@ -246,7 +246,7 @@ KNOWN = [
     Mistake("a COG segment too long for its stoop", "jump", long_segment,
             r"^/keyframes/1: t is 1.1 s.*segment", ("hoap1",)),
     Mistake("left and right exchanged in a phase", "walk", sides_of_phase,
-            r"^/phases/3: support is left .*exchanged"),
+            r"^/phases/3: .*support.*left.*exchanged"),
     Mistake("a foothold on the other side", "walk", other_side,
             r"^/phases/3.*left foot.*exchanged"),
     Mistake("times in ms", "walk", milliseconds, r" ms"),
@@ -560,7 +560,7 @@ class Robots:
             words = said["error"] if isinstance(said["error"], str) else said["error"]["message"]
             words = words.replace(str(file) + ": ", "")
             if words.startswith("likely cause: "):
-                words = re.split(r"; or /|; in addition, /|; the first error is: ", words[len("likely cause: "):])[0]
+                words = re.split(r"\. Or /|\. In addition, /|\. First error: ", words[len("likely cause: "):])[0]
             return "unreadable", words
         causes = said["likely_mistakes"]
         if causes:
