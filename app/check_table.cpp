@@ -190,15 +190,15 @@ std::vector<AnswerPart> check_parts(const ConsistencyReport& report, const Robot
   const auto at = [&](FindingKind kind) { return report.summary[kind]; };
   const auto place = [&](FindingKind kind) { return figure_place(report, kind); };
   const double margin = at(FindingKind::support_margin);
-  parts.push_back(
-      {Worth::figure,
-       {"  ZMP " + mm_text(std::abs(margin)) + (margin < 0 ? " outside" : " inside") +
-        " the support" + place(FindingKind::support_margin) +
-        "; the posture differs from the keys by " + mm_text(at(FindingKind::cog_residual)) +
-        " in COG, " + mm_text(at(FindingKind::zmp_residual)) + " in ZMP and " +
-        text::fixed(at(FindingKind::fz_residual), 2) +
-        " N in force; the ZMP of the point-mass model is " +
-        mm_text(at(FindingKind::point_mass_gap)) + " from the command\n"}});
+  parts.push_back({Worth::figure,
+                   {"  ZMP " + mm_text(std::abs(margin)) + (margin < 0 ? " outside" : " inside") +
+                    " the support" + place(FindingKind::support_margin) +
+                    "; the motion of the full model differs from the command by at most " +
+                    mm_text(at(FindingKind::cog_residual)) + " in COG, " +
+                    mm_text(at(FindingKind::zmp_residual)) + " in ZMP and " +
+                    text::fixed(at(FindingKind::fz_residual), 2) +
+                    " N in f_z; that of the point mass by at most " +
+                    mm_text(at(FindingKind::point_mass_gap)) + " in ZMP\n"}});
   parts.push_back(
       {Worth::figure, {"  share of the limits: " + shares_of_limits(report, model) + "\n"}});
   std::string feet = "  feet: slip " + mm_text(at(FindingKind::foot_slip)) + ", sink " +

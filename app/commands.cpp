@@ -158,8 +158,15 @@ std::string option_message(const CLI::App& app, const CLI::ParseError& error) {
         return (argument ? "the argument " : "the option ") + (argument ? shown : name) +
                " is missing" + help;
       const std::string conversion = "Could not convert: " + name + " = ";
-      if (words.starts_with(conversion))
-        return name + ": '" + words.substr(conversion.size()) + "' is not a valid number" + help;
+      if (words.starts_with(conversion)) {
+        // A number that does not fit the option fails because the option takes whole numbers.
+        const std::string given = words.substr(conversion.size());
+        double number = 0;
+        return name + ": '" + given +
+               (CLI::detail::lexical_cast(given, number) ? "' is not a whole number"
+                                                         : "' is not a number") +
+               help;
+      }
       if (words.starts_with(name + " excludes "))
         return name + " and " + words.substr(name.size() + 10) + " cannot be given together";
       if (!words.starts_with(name + ": ")) continue;

@@ -41,30 +41,39 @@ std::string margin_words(double margin) {
 }
 
 std::string motion_words(const RobotModel& model, const MotionChange& change,
-                         const ConsistencyReport& before, const ConsistencyReport& after) {
+                         const ConsistencyReport& before, const ConsistencyReport& after,
+                         const MotionNames& names) {
+  const bool files = !names.first.empty();
+  const std::string was = files ? " in " + names.first : " before",
+                    is = files ? " in " + names.second : " after",
+                    moved = files ? " differs" : " moved",
+                    changed = files ? " differs" : " changed",
+                    lead = files ? "  different angles: " : "  moved ",
+                    feet = files ? "feet differ" : "feet moved";
   std::string out;
   size_t listed = 0;
   while (listed < std::min(kJointsListed, change.joints.size()) &&
          std::abs(change.joints[listed].most) >= kLeastMove)
     ++listed;
-  if (listed == 0) out += "  no joint moved\n";
+  if (listed == 0) out += files ? "  no joint differs\n" : "  no joint moved\n";
   for (size_t i = 0; i < listed; ++i)
-    out += (i == 0 ? "  moved " : "        ") + joint_words(model, change.joints[i]) + "\n";
+    out += (i == 0 ? lead : std::string(lead.size(), ' ')) + joint_words(model, change.joints[i]) +
+           "\n";
   const size_t rest = change.joints.size() - listed;
   if (listed == kJointsListed && rest > 0)
-    out +=
-        "        and " + text::counted(rest, "more joint", "more joints") + " by smaller amounts\n";
+    out += std::string(lead.size(), ' ') + "and " +
+           text::counted(rest, "more joint", "more joints") + " by smaller amounts\n";
   if (change.cog.size > 5e-5 || change.foot.size > 5e-5)
-    out += "  " + largest("COG moved", change.cog, millimetres(change.cog.size)) + "; " +
-           largest("feet moved", change.foot, millimetres(change.foot.size)) + "\n";
+    out += "  " + largest("COG" + moved, change.cog, millimetres(change.cog.size)) + "; " +
+           largest(feet, change.foot, millimetres(change.foot.size)) + "\n";
   if (change.zmp.size > 5e-5 || change.fz.size > 0.05)
-    out += "  " + largest("commanded ZMP changed", change.zmp, millimetres(change.zmp.size)) +
-           "; " + largest("f_z changed", change.fz, text::fixed(change.fz.size, 1) + " N") + "\n";
-  return out + "  ZMP " + margin_words(before.summary[FindingKind::support_margin]) + " before, " +
-         margin_words(after.summary[FindingKind::support_margin]) +
-         " after; distance of the COG from its command " +
-         millimetres(before.summary[FindingKind::cog_residual]) + " before, " +
-         millimetres(after.summary[FindingKind::cog_residual]) + " after\n";
+    out += "  " + largest("commanded ZMP" + changed, change.zmp, millimetres(change.zmp.size)) +
+           "; " + largest("f_z" + changed, change.fz, text::fixed(change.fz.size, 1) + " N") + "\n";
+  return out + "  ZMP " + margin_words(before.summary[FindingKind::support_margin]) + was + ", " +
+         margin_words(after.summary[FindingKind::support_margin]) + is +
+         "; distance of the COG from its command " +
+         millimetres(before.summary[FindingKind::cog_residual]) + was + ", " +
+         millimetres(after.summary[FindingKind::cog_residual]) + is + "\n";
 }
 
 std::string cost_words(const WeightedChange& cost) {

@@ -15,9 +15,14 @@ namespace ayumi::app {
 std::string margin_words(double margin);
 
 /// A few indented lines: which joints changed, by how much and when; COG, feet, ZMP and f_z; the
-/// ZMP margin before and after.
+/// ZMP margin before and after. With names, the words compare two motions, such as two files, in
+/// place of one motion before and after a change.
+struct MotionNames {
+  std::string first, second;
+};
 std::string motion_words(const RobotModel& model, const MotionChange& change,
-                         const ConsistencyReport& before, const ConsistencyReport& after);
+                         const ConsistencyReport& before, const ConsistencyReport& after,
+                         const MotionNames& names = {});
 
 /// A line such as
 ///   "  weighted change of base and joints 0.17, cost of missing safety 0.003".

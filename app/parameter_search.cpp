@@ -69,7 +69,7 @@ class Search {
       words += (words.empty() ? "" : ", ") + name + " = " + text::brief(value);
       options.set.push_back(name + "=" + text::exact(value));
     }
-    report(context_.progress(), {"parameters", -1, words});
+    report(context_.progress(), {"trying parameters", -1, words});
     Context silent = context_;
     silent.quiet = true;
     try {
@@ -207,7 +207,8 @@ bool passes_with(const Task& input, const Pattern& pattern, const CheckOptions& 
 
 bool stretched_passes(const Context& context, const Task& input, const CheckOptions& check,
                       const std::vector<std::pair<double, double>>& windows, double factor) {
-  report(context.progress(), {"slower", -1, text::brief(factor) + " times as long"});
+  report(context.progress(),
+         {"trying a slower motion", -1, text::brief(factor) + " times as long"});
   try {
     Pattern pattern = input.pattern;
     for (auto w = windows.rbegin(); w != windows.rend(); ++w)

@@ -82,7 +82,7 @@ std::vector<Drawn> draw_all(const PreviewBatch& batch, const std::vector<fs::pat
                                        std::max(1, batch.threads / workers));
         failed += outcomes[size_t(i)].error.empty() ? 0 : 1;
         const int finished = ++done;
-        report(progress, {"preview", double(finished) / count,
+        report(progress, {"drawing the preview", double(finished) / count,
                           std::to_string(finished) + " of " + std::to_string(count) + " runs" +
                               (failed > 0 ? ", " + std::to_string(failed) + " failed" : "")});
       } catch (...) {

@@ -22,8 +22,9 @@ void add_simulation_options(Command& command, SimulationChoice& choice) {
           "--controller", choice.controller,
           "Controller (default: the controller of the pattern). The controllers of Ayumi are dtad "
           "and viip; none is the open loop. The controllers preview, foot-guided and dcm-step "
-          "are other laws, for a comparison. The controllers dtad-literal, viip-landings and "
-          "viip-nofeedback only demonstrate what parts of the laws do.")
+          "are other laws, for a comparison. dtad-literal, viip-landings and viip-nofeedback are "
+          "variants of dtad and viip. They only demonstrate what single parts of these laws "
+          "contribute.")
       ->type_name("NAME");
   command
       .add_option("--scenario", choice.scenario,

@@ -259,7 +259,7 @@ Said run_command(const std::vector<std::string>& arguments, const fs::path& fold
     // [ms] time between two queries of the progress, which may stop the work.
     constexpr int kLook = 50;
     ::poll(pipes.data(), pipes.size(), kLook);
-    if (!stopped && progress && !progress({"export", -1, ""})) {
+    if (!stopped && progress && !progress({"exporting", -1, ""})) {
       stopped = true;
       ::kill(child, SIGTERM);
     }

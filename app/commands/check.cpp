@@ -79,6 +79,17 @@ std::string own_need(const Task& input, CheckOptions judged) {
   return found == report.findings.end() ? "" : found->hint;
 }
 
+// What the motion needs of the actuators. Shorter forms are whole sentences, too: a number without
+// its joint and time says nothing.
+std::vector<AnswerPart> need_parts(const ActuatorNeed& need, const std::string& profile) {
+  const std::string weak =
+      "  profile " + profile + " is too weak: the motion needs more than its motors give";
+  const std::string enough = need.sufficient.empty()
+                                 ? "no other profile is strong enough"
+                                 : "strong enough: " + text::join(need.sufficient, ", ");
+  return {{Worth::remark, {"  " + need.text + "\n", weak + "; " + enough + "\n", weak + "\n"}}};
+}
+
 // The reasons for which `export` refuses the pattern, without the findings.
 std::vector<AnswerPart> refusal_parts(const Task& input, const Judgement& judgement) {
   std::vector<std::string> reasons = export_refusals(input, judgement);
@@ -221,7 +232,7 @@ Checked checked_one(const Context& context, const CheckCommand& options, const s
         " s, actuators " + report.profile + "\n"}}};
   append(parts, mistake_parts(mistakes, report.consistent));
   append(parts, remark_parts(painted(Paint::caution, "scenario:") + " ", disturbed));
-  if (!need.text.empty()) append(parts, remark_parts("", {need.text}));
+  if (!need.text.empty()) append(parts, need_parts(need, report.profile));
   if (!need.flight.empty()) append(parts, remark_parts("", {need.flight}));
   if (!own.empty())
     append(parts, remark_parts("with the robot's own motors, ",

@@ -85,7 +85,8 @@ void diff(Context& context, const DiffCommand& options) {
   if (same)
     words += "  both patterns have the same motion and the same commands\n";
   else
-    words += motion_words(a.robot, change, check_a, check_b) + cost_words(cost) + "\n";
+    words += motion_words(a.robot, change, check_a, check_b, {options.a, options.b}) +
+             cost_words(cost) + "\n";
   if (!same_length)
     words += "  the patterns differ in duration, so only the first " +
              text::fixed(change.compared, 3) + " s are compared\n";
@@ -129,14 +130,15 @@ void add_diff(Command& app, Context& context) {
   command->add_option("--plot", options.plot, "Draw both patterns over time (.svg or .png).")
       ->type_name("F");
   command
-      ->add_option("--weight", options.weights,
-                   "Factor on the cost of moving this joint, as for repair (default: the factor in "
-                   "the pattern; 1 if the pattern has none).")
+      ->add_option(
+          "--weight", options.weights,
+          "Factor on the motion of this joint in the weighted change that is printed, as for "
+          "repair (default: the factor in the pattern; 1 if the pattern has none).")
       ->type_name("JOINT=FACTOR")
       ->allow_extra_args(false);
   command
       ->add_option("--safety", options.safety,
-                   "Weight of safety in the reported cost, as for repair "
+                   "Factor on the cost of missing safety that is printed, as for repair "
                    "(default: the factor in the pattern; 1 if the pattern has none).")
       ->check(number_within(0.0, 1e6))
       ->type_name("FACTOR");

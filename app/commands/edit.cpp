@@ -753,10 +753,10 @@ void add_edit(Command& app, Context& context) {
   retime_command
       .add_option(
           "--margin", options.margin,
-          "With --local: upper limit of the distance that the ZMP has to keep from the edge "
-          "of the support [m]. Without --margin, this distance is an eighth of the width of "
-          "the sole, or 80 % of the distance that the result has without --local, whichever "
-          "is larger. A smaller value allows a faster motion.")
+          "With --local: largest distance to the edge of the support that Ayumi requires of the "
+          "ZMP [m]. A smaller value allows a faster motion. Default: the larger of an eighth of "
+          "the sole's width and 80 % of the smallest distance in the result of --to-limits "
+          "alone.")
       ->check(number_within(LocalRetimeOptions::kMostMargin))
       ->type_name("M");
   retime_command.add_flag("--keep-pauses", options.keep_pauses,

@@ -478,9 +478,13 @@ std::vector<std::string> refusals(const ExportOptions& options, const Source& so
 }
 
 std::string words_of(const TableServo& servo) {
-  if (servo.content == "ideal") return "joint angles, not servo targets (--servo ideal)";
+  if (servo.content == "ideal")
+    return "the table contains joint angles, not servo targets (--servo ideal); limits of "
+           "profile " +
+           servo.profile;
   const bool one = servo.lag.find(' ') == std::string::npos;
-  return "the targets are ahead of the posture by the lag of the servos" +
+  return "made for the servos of profile " + servo.profile +
+         ": the targets are ahead of the posture by the lag of the servos" +
          (one ? " (" + text::brief(1000 * std::atof(servo.lag.c_str()), 3) + " ms)" : "") +
          (servo.content == "lead" ? "" : ", and they also compensate for the sag");
 }
@@ -529,8 +533,7 @@ std::string in_words(const ExportOptions& options, const Source& source, const S
   if (const std::string lost = lost_content(options, source, safe); !lost.empty())
     text += "  the format cannot store " + lost + "\n";
   const TableServo& servo = safe.table.servo;
-  if (!servo.content.empty())
-    text += "  made for the servos of profile " + servo.profile + ": " + words_of(servo) + "\n";
+  if (!servo.content.empty()) text += "  " + words_of(servo) + "\n";
   text += words_on_zeros(options, safe.table);
   text += "  ramp " + text::brief(report.ramp) + " s, hold " + text::brief(report.hold) +
           " s; the pattern begins at " + text::brief(report.ramp) + " s of the table";
@@ -832,7 +835,8 @@ void add_export(Command& app, Context& context) {
       ->excludes(interval);
   command->add_option("--layout", options->layout,
                       "Name of the column layout for --format hoap, one of \"layouts\" in the "
-                      "sidecar (default: the first one that has an interval).");
+                      "sidecar (default: the first layout that states an interval, because Ayumi "
+                      "writes only such layouts).");
   Option* posture = command
                         ->add_option("--posture", options->safety.from,
                                      "Posture of the robot before the ramp, or 'first' for the "

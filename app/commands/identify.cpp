@@ -222,11 +222,12 @@ void add_identify(Command& app, Context& context) {
                    "soles, otherwise fixed (default: auto).")
       ->check(one_of({"auto", "feet", "fixed"}));
   command
-      ->add_option("--measured-at", options.at,
-                   "What measured the angles. encoder: the encoders of the servos; the offsets "
-                   "that ROBOT states are added to their readings. joint: instruments at the "
-                   "joints. Only such instruments show offsets of the encoders, so the new sidecar "
-                   "states new offsets only with joint.")
+      ->add_option(
+          "--measured-at", options.at,
+          "What measured the angles. encoder: the encoders of the servos; the offsets "
+          "that ROBOT states are added to their readings. joint: instruments at the "
+          "joints. Offsets of the encoders can be found only with such instruments. So the "
+          "new sidecar has new offsets only with --measured-at joint.")
       ->check(one_of({"encoder", "joint"}))
       ->capture_default_str();
   command->add_option("--unit", unit, "Unit of the joint columns whose names do not state a unit.")

@@ -172,22 +172,23 @@ void add_import(Command& app, Context& context) {
   command
       ->add_option(
           "--contact-load", options.how.contact.load,
-          "Where the motion needs a smaller vertical ground force than this, no sole carries the "
-          "robot [multiple of the weight].")
+          "Vertical ground force below which the robot is taken to be in the air: at these times, "
+          "no sole carries it [multiple of the weight].")
       ->check(number_within(ContactThresholds::kLoad))
       ->capture_default_str();
   command->add_flag(
       "--commands", options.how.reading.commands,
-      "The angles are servo targets, as export writes them: subtract the lead of the "
-      "servos to get the joint angles. This is always done for reference tables, that is, "
+      "The angles of the file are servo targets, as export writes them. Ayumi then subtracts the "
+      "lead of the servos to get the joint angles. This is always done for reference tables, that "
+      "is, "
       "for reference.csv of a run and for the csv and json tables of export.");
   command
       ->add_option(
           "--measured-at", at,
           "What the angles are. encoder: readings or targets of encoders; the offsets that "
           "ROBOT states are added to them. joint: joint angles (default: encoder for "
-          "--commands and for formats that a robot plays or records, otherwise joint; a "
-          "table of Ayumi states its own offsets in its head).")
+          "--commands and for formats that a robot plays or records, otherwise joint). "
+          "For a table that Ayumi wrote, the offsets in the head of the table are used.")
       ->check(one_of({"encoder", "joint"}));
   command
       ->add_option("--smooth", options.how.reading.smooth,

@@ -1059,7 +1059,8 @@ void add_new(Command& app, Context& context) {
   stand->callback([shared, &context] { new_stand(context, *shared); });
   Command* excite = command->add_subcommand(
       "excite",
-      "move every joint in slow sweeps, chirps and steps, to record the robot for identify");
+      "move every joint in slow sweeps, chirps and steps; a recording of this motion is the input "
+      "of ayumi identify");
   excite->footer("Examples:\n  ayumi new excite hoap1 -o excite.json");
   add_new_file(*excite, options.file);
   excite->add_option("ROBOT", options.file.robot,

@@ -102,7 +102,7 @@ std::string lower_jump(const RobotModel& model, JumpParameters& p, const JumpOpt
   for (const double stature : options.cog_height ? same : std::vector{1.0, 0.9})
     for (const double stoop : options.stoop ? same : std::vector{1.0, 0.4})
       for (const double height : options.height ? same : lower) {
-        report(progress, {"look for a lower jump", done++ / 20.0, ""});
+        report(progress, {"looking for a lower jump", done++ / 20.0, ""});
         p.height = 1e-4 * std::round(1e4 * height * asked.height);
         p.cog_height = 1e-4 * std::round(1e4 * stature * asked.cog_height);
         p.stoop = 1e-4 * std::round(1e4 * stoop * asked.stoop);
@@ -132,7 +132,8 @@ JumpParameters highest_jump(const RobotModel& model, JumpParameters p, const std
   int done = 0;
   for (const double share : heights)
     for (const double depth : stoops) {
-      report(progress, {"highest jump", done++ / 36.0, text::brief(1e3 * best.height, 3) + " mm"});
+      report(progress, {"looking for the highest jump", done++ / 36.0,
+                        text::brief(1e3 * best.height, 3) + " mm"});
       p.cog_height = share * scaled.cog_height;
       p.stoop = depth * scaled.stoop;
       const auto good = [&](double height) {

@@ -273,7 +273,9 @@ void add_picture_options(Command& command, PreviewOptions& options) {
       "of these times that exists: just after the first push, at the fall, in the middle of the "
       "first flight; otherwise the time at which the posture differs most from the first "
       "posture).");
-  command.add_option("--strip", options.strip, "Number of snapshots side by side in a .png.")
+  command
+      .add_option("--strip", options.strip,
+                  "Draw this number of snapshots into one .png, in rows of --columns.")
       ->check(whole_number_within(StripOptions::kCount));
   command
       .add_option("--exposures", options.exposures,
@@ -281,7 +283,7 @@ void add_picture_options(Command& command, PreviewOptions& options) {
       ->check(whole_number_within(StripOptions::kExposures));
   command
       .add_option("--columns", options.columns,
-                  "Number of pictures side by side in --strip and --sheet.")
+                  "Number of pictures in one row of --strip and --sheet.")
       ->check(whole_number_within(StripOptions::kColumns))
       ->capture_default_str();
   command.add_option("--view", clip.camera.view, "View: " + text::join(view_names(), ", ") + ".")

@@ -126,7 +126,9 @@ std::string table(const std::vector<PushCase>& cases, const PushOptions& push,
   std::string out;
   for (size_t p = 0; p < cases.size() / directions; ++p) {
     const PushCase* row = &cases[p * directions];
-    out += row->phase.name + ", push at " + text::fixed(row->phase.at, 3) + " s\n";
+    // A phase that was chosen by --at has the time as its name.
+    const std::string at = text::fixed(row->phase.at, 3) + " s";
+    out += (row->phase.name == "t = " + at ? "" : row->phase.name + ", ") + "push at " + at + "\n";
     const auto line = [&](const std::string& label, const auto& cell) {
       out += "  " + label + std::string(label.size() < kLabel ? kLabel - label.size() : 1, ' ');
       for (size_t i = 0; i < directions; ++i) out += push_cell(cell(row[i]), kCell);
@@ -150,11 +152,12 @@ std::string table(const std::vector<PushCase>& cases, const PushOptions& push,
       line(name_of(push.controllers[k].type) + " J/mv",
            [k](const PushCase& c) { return text::fixed(push_froude(c, c.limits[k].impulse), 3); });
   }
-  for (const std::string& line : push_summary_lines(cases, push, series)) out += line + "\n";
-  return out + kPushBoundLegend +
+  out += std::string(kPushBoundLegend) +
          "; + = the robot survived even the largest push that was tried\n"
          "J/m = speed that the push gives to the COG, in m/s; J/mv = this speed divided by v = "
          "sqrt(g z), where z is the height of the COG above the ZMP\n";
+  for (const std::string& line : push_summary_lines(cases, push, series)) out += line + "\n";
+  return out;
 }
 
 Json result_json(const std::vector<PushCase>& cases, const PushOptions& push, double wall) {

@@ -154,18 +154,20 @@ std::string in_words(const RepairCommand& options, const Task& input, const Gene
   if (result.status == RepairStatus::already_consistent)
     return out + "  nothing had to change, so " + options.out + " is a copy of the pattern\n";
   out += steering_words(options, input.pattern);
-  const bool moves = result.moved.joint.size > 1e-4;
-  if (result.status != RepairStatus::repaired && !options.repair.keep_partial && moves)
-    out +=
-        "  the motion with the smallest violation is not written (--keep-partial writes it). In "
-        "this motion:\n";
+  const bool written = result.status == RepairStatus::repaired || options.repair.keep_partial;
+  if (!written && result.moved.joint.size > 1e-4)
+    out += "  the motion with the smallest violation is not written (--keep-partial writes it)\n";
   if (options.from_scratch) out += start_words(input.pattern, made);
   out += smooth_words(result);
-  out += motion_words(model, result.moved, result.before, result.check);
-  out += cost_words(result.change) + "; " + std::to_string(result.variables) + " variables, " +
-         std::to_string(result.constraints) + " constraints, " + std::to_string(result.iterations) +
-         " iterations, " + text::fixed(wall, 2) + " s\n";
-  for (const std::string& reason : result.reasons) out += "  because " + reason + "\n";
+  if (written)
+    out += motion_words(model, result.moved, result.before, result.check) +
+           cost_words(result.change) + "; ";
+  else
+    out += "  ";
+  out += std::to_string(result.variables) + " variables, " + std::to_string(result.constraints) +
+         " constraints, " + std::to_string(result.iterations) + " iterations, " +
+         text::fixed(wall, 2) + " s\n";
+  for (const std::string& reason : result.reasons) out += "  reason: " + reason + "\n";
   std::vector<AnswerPart> parts = {{Worth::verdict, {out}}};
   append(parts, mistake_parts(mistakes, false));
   append(parts, search_parts(mistakes));
@@ -537,8 +539,8 @@ void add_repair(Command& app, Context& context) {
       ->add_option(
           "--margin", options.margin,
           "Wanted distance from the ZMP to the edge of the support [m]. Where the original motion "
-          "has a smaller distance, the repair tries to reach the wanted one (default: 0.9 x "
-          "inner radius of the sole).")
+          "has a smaller distance, the repair tries to reach the wanted one (default: 0.9 x the "
+          "radius of the largest circle inside the sole).")
       ->check(number_within(RepairOptions::kZmpMargin))
       ->type_name("M");
   command

@@ -252,7 +252,7 @@ void replay(Context& context, const ReplayCommand& options) {
     how.seed = context.seed;
     logs.push_back(simulate(task, how, context.progress(), context.command_line));
     const Tracking tracking = tracking_of(logs.back(), static_cast<size_t>(board.targets.cols()));
-    words += "  " + plant + ": " + outcome_text(logs.back()) + "; the joints are " +
+    words += "  simulator " + plant + ": " + outcome_text(logs.back()) + "; the joints are " +
              in_degrees(tracking.mean) + " from their targets on average and " +
              in_degrees(tracking.most, 2) + " at most (" + tracking.joint + " at " +
              text::fixed(tracking.at, 3) + " s)\n";

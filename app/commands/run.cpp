@@ -132,7 +132,7 @@ AnswerPart check_part(const ConsistencyReport& report, const RobotModel& model) 
                               text::fixed(1e3 * report.summary[FindingKind::support_margin], 1) +
                               " mm";
   return {Worth::figure,
-          {stage_line("check", verdict + ", limits of " + report.profile + ": " +
+          {stage_line("check", verdict + ", share of the limits of " + report.profile + ": " +
                                    shares_of_limits(report, model)),
            stage_line("check", verdict)},
           kStageHang};
@@ -248,8 +248,9 @@ void MainJob::write_hoap(const Task& input) {
                                                          std::exchange(run.postures, {})),
                                        std::exchange(run.torque, {}), safety);
   folder_.sections.emplace_back("export", safety_json(safe.report));
-  std::string text = options_.light ? "the logs contain the tables; ayumi export writes them"
-                                    : "reference.csv, reference.json";
+  std::string text =
+      options_.light ? "no table is written with --light; `ayumi export` makes one from the logs"
+                     : "reference.csv, reference.json";
   if (folder_.pushed && !options_.light)
     text += ", reference_pushed.csv (with the reactions to the disturbances)";
   const bool encoders = input.robot.dofs().front().encoder.device > 0;

@@ -377,7 +377,10 @@ void add_sweep(Command& app, Context& context) {
           ->check(number_within(0.1, 1e6).description(""))
           ->capture_default_str(),
       "S");
-  for_slurm(command->add_option("--pilot", slurm.pilot, "Number of cases in the pilot run.")
+  for_slurm(command
+                ->add_option("--pilot", slurm.pilot,
+                             "Number of cases that Ayumi runs first to measure how "
+                             "long a case takes (see --chunk).")
                 ->check(whole_number_within(1, 1000).description(""))
                 ->capture_default_str(),
             "N");

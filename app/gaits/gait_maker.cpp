@@ -146,7 +146,7 @@ double GaitMaker::best_height(const std::vector<GaitCell>& cells, int threads,
         if (!is_of_the_walk(error)) throw;
       }
       const std::lock_guard lock(mutex);
-      report(progress, {"COG height", -1, ""});
+      report(progress, {"choosing the COG height", -1, ""});
     });
     const auto count = static_cast<size_t>(std::count(passes.begin(), passes.end(), 1));
     if (count > most) {

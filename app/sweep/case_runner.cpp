@@ -404,7 +404,7 @@ std::vector<Cell> run_figures(const Task& task, const SimulateOptions& options,
   double positive = 0, first = 0;
   Eigen::Vector2d start = Eigen::Vector2d::Zero();
   while (run.advance(1) && !run.fell()) {
-    if (run.tick() % kTicksBetweenReports == 0) report(progress, {"simulate", -1, "simulation"});
+    if (run.tick() % kTicksBetweenReports == 0) report(progress, {"simulating", -1, ""});
     if (!measures.energy) continue;
     const SimulationSample& s = run.last_sample();
     if (run.tick() == 1) start = s.cog.head<2>();

@@ -337,7 +337,8 @@ std::string study_page(const ResultsDatabase& results, const std::vector<Expecta
   const Json worst = worst_cases(results, kShownCases);
   std::string worst_text = worst_table(results, worst);
   for (int i = 0; runner && i < std::min<int>(replays, static_cast<int>(worst.size())); ++i) {
-    report(progress, {"page", double(i) / double(replays), "replay " + std::to_string(i + 1)});
+    report(progress,
+           {"writing the page", double(i) / double(replays), "replay " + std::to_string(i + 1)});
     worst_text += replay_of(*runner, worst[static_cast<size_t>(i)]);
   }
   html::Table errors{.caption = "", .head = {"case", "why"}, .rows = {}};

@@ -246,7 +246,7 @@ KNOWN = [
     Mistake("too much time between the COG key of the stoop and the lift-off", "jump", long_segment,
             r"^/keyframes/1: t is 1.1 s.*segment", ("hoap1",)),
     Mistake("left and right exchanged in a phase", "walk", sides_of_phase,
-            r"^/phases/3: support is left .*exchanged"),
+            r"^/phases/3: .*support.*left.*exchanged"),
     Mistake("a foothold on the other side", "walk", other_side,
             r"^/phases/3.*left foot.*exchanged"),
     Mistake("times in ms", "walk", milliseconds, r" ms"),

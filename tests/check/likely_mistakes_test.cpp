@@ -75,9 +75,8 @@ TEST(LikelyMistakes, ASearchWithoutACauseComesLast) {
   EXPECT_STREQ(with_mistakes(error, pattern, none).what(),
                "a.json: /phases/1: out of reach; no likely cause was found");
   const Error explained = with_mistakes(error, pattern, {{"/units", "in degrees"}});
-  EXPECT_STREQ(
-      explained.what(),
-      "a.json: likely cause: /units: in degrees; the first error is: /phases/1: out of reach");
+  EXPECT_STREQ(explained.what(),
+               "a.json: likely cause: /units: in degrees; the first error is: /phases/1: out of reach");
   EXPECT_EQ(explained.words(),
             "likely cause: /units: in degrees; the first error is: /phases/1: out of reach");
   EXPECT_EQ(explained.place().inside, "/units") << "the place to change";
@@ -230,7 +229,7 @@ TEST(LikelyMistakes, AWalkInMillisecondsIsRefusedBeforeItIsSampled) {
   pattern.file = "walk.json";
   for (Phase& phase : pattern.phases) phase.until *= 1000;
   for (Keyframe& key : pattern.keyframes) key.t *= 1000;
-  const Progress watch = [](const ProgressEvent& event) { return event.stage != "sample"; };
+  const Progress watch = [](const ProgressEvent& event) { return event.stage != "sampling"; };
   try {
     make_task(pattern, hoap1(), "", watch);
     FAIL() << "a swing of minutes passed";
@@ -250,7 +249,7 @@ TEST(LikelyMistakes, ALongMotionWithoutSwingsIsOnlyDoubted) {
   std::string caution;
   const Progress watch = [&](const ProgressEvent& event) {
     if (event.stage == "caution") caution = event.detail;
-    return event.stage != "sample";
+    return event.stage != "sampling";
   };
   EXPECT_THROW(make_task(pattern, hoap1(), "", watch), Interrupted);
   EXPECT_NE(caution.find("divide them by 1000"), std::string::npos) << caution;

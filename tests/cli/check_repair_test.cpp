@@ -123,7 +123,7 @@ TEST_F(CheckRepair, AnUnknownNameIsSaidAloneAtOnce) {
     EXPECT_EQ(answer.exit_code, 3);
     EXPECT_NE(answer.err.find(meant), std::string::npos) << answer.err;
     EXPECT_EQ(answer.err.find("likely cause"), std::string::npos) << answer.err;
-    EXPECT_EQ(answer.err.find("look for the cause"), std::string::npos) << answer.err;
+    EXPECT_EQ(answer.err.find("looking for the cause"), std::string::npos) << answer.err;
     EXPECT_EQ(answer.err.find("trial"), std::string::npos) << answer.err;
   }
 }

@@ -67,7 +67,7 @@ TEST_F(Infeasible, AFootholdOnTheOtherFootIsNamed) {
   write(folder / "walk.json", walk);
   const Output failed = ayumi({"repair", "walk.json", "-o", "out.json"});
   EXPECT_EQ(failed.exit_code, 4) << failed.err;
-  EXPECT_NE(failed.out.find("because the left foot is planned to stand on the right foot"),
+  EXPECT_NE(failed.out.find("reason: the left foot is planned to stand on the right foot"),
             std::string::npos)
       << failed.out;
   EXPECT_NE(failed.out.find("likely cause: /phases/3: the left foot's"), std::string::npos)

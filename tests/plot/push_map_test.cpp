@@ -160,7 +160,7 @@ std::string label_of(const CommandSeries& series) {
   PushOptions options;
   options.controllers.resize(1);
   const std::string line = push_summary_lines({push}, options, series).front();
-  return line.substr(0, line.find(':'));
+  return line.substr(0, line.find(", "));
 }
 
 TEST(PushMap, TheLabelFitsTheMotion) {

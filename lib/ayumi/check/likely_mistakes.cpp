@@ -561,8 +561,8 @@ Error with_mistakes(const Error& error, const Pattern& pattern,
     causes += mistake.text();
     round = mistake.round;
   }
-  const std::string words = "likely cause: " + causes +
-                            "; the first error is: " + (in_file ? error.words() : error.what());
+  const std::string words =
+      "likely cause: " + causes + "; the first error is: " + (in_file ? error.words() : error.what());
   SourcePlace place = error.place();
   // What should be changed is where the first cause is.
   if (in_file && cause->place.starts_with("/")) place.inside = cause->place;

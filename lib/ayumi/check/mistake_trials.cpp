@@ -84,7 +84,7 @@ int Trials::quick_cost(const Pattern& pattern) const {
 }
 
 TrialOutcome Trials::exactly(Pattern pattern, const Mend& mend) const {
-  report(progress_, {"look for the cause", -1, ""});  // may stop the search
+  report(progress_, {"looking for the cause", -1, ""});  // may stop the search
   mend(pattern);
   TrialOutcome outcome = of(pattern, true);
   outcome.table_alone = !outcome.good();
@@ -120,7 +120,7 @@ std::vector<TrialOutcome> Trials::after(const Pattern& pattern, const std::vecto
   std::vector<TrialOutcome> outcomes(mends.size());
   std::vector<std::pair<size_t, Pattern>> mended;  // few at once: a long pattern is large
   const auto try_mended = [&] {
-    report(progress_, {"look for the cause", -1, ""});  // may stop the search
+    report(progress_, {"looking for the cause", -1, ""});  // may stop the search
     std::atomic<bool> stop = false;
     in_parallel(mended.size(), threads_, stop,
                 [&](size_t i) { outcomes[mended[i].first] = of(mended[i].second); });

@@ -586,7 +586,7 @@ Identification identify(const RobotModel& model, const RecordedMotion& motion,
   require_within("the rate of the measured angles", rate_of_rows(motion.measured.dt),
                  kRecordingRate);
   require_answer(model, motion.command, motion.measured, longest, place);
-  report(progress, {"loads", 0, ""});
+  report(progress, {"computing the loads", 0, ""});
   const JointLoads loads = joint_loads(model, motion, options.stand);
   require_loads(motion.sensors, motion.measured, loads.agreement, options.loads_place);
   const std::vector<std::string> types = motor_types(model);

@@ -326,7 +326,7 @@ template <class Work>
 Worst worst_of_blocks(const SampleJob& job, int block, const Work& work) {
   std::mutex mutex;
   Worst worst;
-  in_blocks(job, "sample", job.count, block, [&](int first, int end) {
+  in_blocks(job, "sampling", job.count, block, [&](int first, int end) {
     const Worst here = work(first, end);
     const std::lock_guard lock(mutex);
     worst.include(here);
@@ -359,7 +359,8 @@ void describe(const SampleJob& job, const CogPlan& plan, const Worst& worst,
   if (moved > 5e-5)
     origin["zmp"] += ", moved by up to " + millimetres(moved) +
                      " near the ends so that the motion starts and stops at rest";
-  origin["cog_height"] = job.tracks.cog[2] ? "keys" : "level, from the defaults";
+  origin["cog_height"] =
+      job.tracks.cog[2] ? "keys" : "constant above the ground, from the defaults";
   if (!job.tracks.fz) origin["fz"] = "computed from the COG height, equation (16)";
   origin["torso"] = job.tracks.torso ? "keys" : "level, along the mean heading of the feet";
   if (flies(job)) {
@@ -386,7 +387,8 @@ void describe(const SampleJob& job, const CogPlan& plan, const Worst& worst,
       origin["legs"] += "; a swinging sole by up to " + millimetres(worst.swing) + " (allowed " +
                         millimetres(kSwingingTolerance) + " in the middle of a swing)";
   }
-  origin["joints"] = "legs by inverse kinematics, others from keys and default posture";
+  origin["joints"] =
+      "legs by inverse kinematics; other joints from their keys, or from the default posture";
 }
 
 }  // namespace
@@ -411,7 +413,7 @@ CommandSeries sample_body_driven(const SampleJob& job) {
   series.samples.resize(job.count);
   series.origin = job.tracks.origin;
   const CogPlan plan = plan_cog(job);
-  report(job.progress, {"sample", 0, ""});
+  report(job.progress, {"sampling", 0, ""});
   // Without postures of a grid, each sample is solved from the previous one.
   Worst worst = worst_of_blocks(job, plan.postures.empty() ? 0 : kBlock, [&](int first, int end) {
     return solve_block(job, plan, first, end, series);

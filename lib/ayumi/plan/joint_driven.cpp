@@ -227,7 +227,8 @@ CommandSeries sample_joint_driven(const SampleJob& job) {
   fill_feet(job, series);
   fill_commands(job, series);
   series.servo_commands = job.pattern.table && job.pattern.table->commands;
-  series.origin["joints"] = job.tracks.driver + ", others from keys and default posture";
+  series.origin["joints"] =
+      job.tracks.driver + "; other joints from their keys, or from the default posture";
   series.origin.try_emplace("cog", "of the posture");
   series.origin.try_emplace("zmp", "computed from the full model");
   series.origin.try_emplace("fz", "computed from the full model");

@@ -38,7 +38,7 @@ constexpr double kZmpGoal = 1e-4;
 /// value (constants.md).
 constexpr int kMostIterations = 12;
 
-constexpr const char* kStage = "solve the COG";
+constexpr const char* kStage = "computing the COG";
 
 // The plan on a uniform grid over the whole pattern.
 struct Grid {
@@ -286,8 +286,9 @@ void CogSolver::correct() {
       in_blocks(job, kStage, grid.n + 1, kBlock,
                 [&](int first, int end) { solve_again(first, end); });
     const double worst = measure();
-    report(job.progress, {kStage, static_cast<double>(pass) / kMostIterations,
-                          "ZMP error " + millimetres(worst)});
+    report(job.progress,
+           {kStage, static_cast<double>(pass) / kMostIterations,
+            "ZMP error " + millimetres(worst) + " after pass " + std::to_string(pass + 1)});
     worse = worst < best ? 0 : worse + 1;
     if (worse == 0) {
       best = worst;

@@ -125,7 +125,7 @@ CommandSeries sample(const RobotModel& model, const Pattern& pattern, const Samp
     series = sample_keys(model, pattern, options, progress);
   }
   if (pattern.correction) series = apply_correction(model, series, *pattern.correction);
-  report(progress, {"sample", 1.0, ""});
+  report(progress, {"sampling", 1.0, ""});
   return series;
 }
 

@@ -154,8 +154,9 @@ CommandSeries with_viip_phases(const RobotModel& model, const Pattern& pattern,
     series.samples.push_back(series.samples.back());
   else
     for (; done <= last; ++done) series.samples.push_back(cut.samples[static_cast<size_t>(done)]);
-  series.origin["viip"] = "the posture is held during " + std::to_string(cuts.size()) +
-                          (cuts.size() == 1 ? " phase" : " phases") + " with VIIP goals";
+  series.origin["viip"] = std::to_string(cuts.size()) + (cuts.size() == 1 ? " phase" : " phases") +
+                          " with VIIP goals: the simulation computes the motion; the check "
+                          "assumes that the posture is held";
   return series;
 }
 

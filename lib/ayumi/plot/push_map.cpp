@@ -313,14 +313,16 @@ std::vector<std::string> push_summary_lines(const std::vector<PushCase>& cases,
     for (const bool standing : {false, true}) {
       const PushSummary s = summarize(cases, k, standing, push.step);
       if (s.cases == 0) continue;
-      lines.push_back((standing ? "standing" : motion) + ": " + name_of(push.controllers[k].type) +
-                      " worst " + text::fixed(s.worst, 2) + " B, mean " + text::fixed(s.mean, 2) +
-                      " B (J/m " + text::fixed(s.worst_speed, 2) + ", " +
-                      text::fixed(s.mean_speed, 2) + " m/s; J/(m sqrt(g z)) " +
-                      text::fixed(s.worst_froude, 3) + ", " + text::fixed(s.mean_froude, 3) +
-                      "); " + open + " worst " + text::fixed(s.open_worst, 2) + " B, mean " +
-                      text::fixed(s.open_mean, 2) + " B; " + name_of(push.controllers[k].type) +
-                      " survives less than " + open + " in " + std::to_string(s.below_open) +
+      const std::string when = standing ? "standing" : motion,
+                        law = name_of(push.controllers[k].type);
+      lines.push_back(when + ", " + law + ": smallest push limit " + text::fixed(s.worst, 2) +
+                      " B (J/m " + text::fixed(s.worst_speed, 2) + " m/s, J/mv " +
+                      text::fixed(s.worst_froude, 3) + "), mean " + text::fixed(s.mean, 2) +
+                      " B (J/m " + text::fixed(s.mean_speed, 2) + " m/s, J/mv " +
+                      text::fixed(s.mean_froude, 3) + ")");
+      lines.push_back(when + ", " + open + ": smallest push limit " + text::fixed(s.open_worst, 2) +
+                      " B, mean " + text::fixed(s.open_mean, 2) + " B; the push limit of " + law +
+                      " is smaller than that of " + open + " in " + std::to_string(s.below_open) +
                       " of " + text::counted(s.cases, "case"));
     }
   return lines;

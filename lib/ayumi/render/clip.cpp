@@ -711,7 +711,8 @@ ClipSummary write_clip(const RobotModel& model, const SimulationLog& log, const 
     for (int k = 0; k < count; ++k) {
       const auto alive = [&] {
         try {
-          report(progress, {"preview", double(k) / count, "frame " + std::to_string(k)});
+          report(progress,
+                 {"drawing the preview", double(k) / count, "frame " + std::to_string(k)});
         } catch (...) {
           stopped = true;  // stops the threads that prepare the surface
           throw;
@@ -732,7 +733,7 @@ ClipSummary write_clip(const RobotModel& model, const SimulationLog& log, const 
     write_file_with(path, [&](const fs::path& temporary) {
       try {
         double done = 0;
-        const auto alive = [&] { report(progress, {"preview", done, ""}); };
+        const auto alive = [&] { report(progress, {"drawing the preview", done, ""}); };
         ClipEncoder encoder(temporary, picture.width, picture.height, options.fps, options.encoder,
                             alive);
         frames([&](int k, const Image& image) {
@@ -746,7 +747,7 @@ ClipSummary write_clip(const RobotModel& model, const SimulationLog& log, const 
       }
     });
   }
-  report(progress, {"preview", 1.0, std::to_string(count) + " frames"});
+  report(progress, {"drawing the preview", 1.0, std::to_string(count) + " frames"});
   return {count, picture.width, picture.height, options.fps, {}, notes};
 }
 

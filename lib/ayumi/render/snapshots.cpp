@@ -86,7 +86,7 @@ Image draw_strip(const RobotModel& model, const SimulationLog& log, const StripO
   // height.
   clip.overlay.push_length = std::min(clip.overlay.push_length, 0.34);
   const auto alive = [&](const ProgressEvent&) {
-    report(progress, {"snapshots", 0, ""});
+    report(progress, {"drawing the snapshots", 0, ""});
     return true;
   };
   require_sheet(static_cast<long>(times.size()), options.columns, clip.picture.width,
@@ -96,7 +96,7 @@ Image draw_strip(const RobotModel& model, const SimulationLog& log, const StripO
   renderer.frame_robot(times);
   std::vector<Image> tiles;
   for (const double t : times) {
-    report(progress, {"snapshots", double(tiles.size()) / double(times.size()), ""});
+    report(progress, {"drawing the snapshots", double(tiles.size()) / double(times.size()), ""});
     tiles.push_back(renderer.tile(t));
   }
   const Image tiled = draw_sheet(tiles, options.columns);

@@ -91,14 +91,14 @@ class Thinning {
     for (int round = 1; round <= kRounds; ++round) {
       const double share = double(round) / kRounds;
       if (tolerance_ * share <= done) continue;
-      report(progress, {"surface", -1, ""});
+      report(progress, {"reducing the surface", -1, ""});
       before = facets_.size();
       go_through(tolerance_ * share * tolerance_ * share);
       std::erase_if(facets_, [](const Facet& facet) { return facet.gone; });
     }
     // Further rounds with the last bound remove edges that have become removable.
     for (int more = 0; more < kRounds && facets_.size() < before - before / 50; ++more) {
-      report(progress, {"surface", -1, ""});
+      report(progress, {"reducing the surface", -1, ""});
       before = facets_.size();
       go_through(tolerance_ * tolerance_);
       std::erase_if(facets_, [](const Facet& facet) { return facet.gone; });

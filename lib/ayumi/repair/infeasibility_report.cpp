@@ -139,12 +139,22 @@ std::vector<std::string> remaining_errors(const ConsistencyReport& check) {
 
 namespace {
 
+// The advice of a finding without the fact before its colon, which the reason has already stated.
+// The advice on a torque begins with no fact.
+std::string without_fact(const InfeasibilityCause& cause) {
+  const Finding& finding = cause.finding;
+  const bool has_fact =
+      spec_of(finding.kind).infeasibility && finding.kind != FindingKind::joint_torque;
+  const size_t colon = has_fact ? finding.remedy.find(": ") : std::string::npos;
+  return colon == std::string::npos ? finding.remedy : finding.remedy.substr(colon + 2);
+}
+
 std::string remedy(const InfeasibilityCause& cause) {
   if (cause.time_factor > 1)
     return "stretch this window to " +
            text::fixed(std::ceil(10 * cause.time_factor - 1e-9) / 10, 1) + " times its length";
-  return (is_matter_of_time(cause.finding) ? "a slower motion does not help; " : "") +
-         cause.finding.remedy;
+  return without_fact(cause) +
+         (is_matter_of_time(cause.finding) ? " (a slower motion does not help)" : "");
 }
 
 // The lock that covers the time of a finding, in words; empty if there is none.
@@ -191,11 +201,12 @@ std::vector<InfeasibilityCause> infeasibility_report(const RobotModel& model,
       worst_of(report, [&](const Finding& f) { return is_error(f) && (!by_lock || locked(f)); });
   for (InfeasibilityCause& cause : result) {
     cause.time_factor = time_factor(model, series, cause.finding, options.check);
-    cause.text = words_of(cause) + ": ";
+    cause.text = words_of(cause) + "; ";
     if (at_locked_joint(cause.finding, options))
-      cause.text += cause.finding.where + " is locked; unlock the joint. Otherwise: ";
+      cause.text +=
+          cause.finding.where + " is locked, so unlock the joint, or change the pattern: ";
     else if (const std::string lock = time_lock(cause.finding, options); !lock.empty())
-      cause.text += lock + "; remove the lock. Otherwise: ";
+      cause.text += lock + ", so remove the lock, or change the pattern: ";
     cause.text += remedy(cause);
   }
   most_severe_first(result);
@@ -211,7 +222,7 @@ void solve_relaxed(RepairState& state) {
   options.least_violating = nullptr;
   options.most_work = work_left(state, 0);
   const NlpSolution solution =
-      solve(relaxed, options, state.progress, "repair, search for the reasons");
+      solve(relaxed, options, state.progress, "repairing, searching for the reasons");
   const double violation = state.result.constraint_violation;
   note_work(state, relaxed, solution);
   state.result.constraint_violation = violation;

@@ -114,7 +114,7 @@ void solve_at_the_limits(RepairState& state, const PassingResult& passing) {
       state.status = NlpStatus::iteration_limit;
       return;
     }
-    solve_program(state, "repair, least change", tolerance);
+    solve_program(state, "repairing, searching for the least change", tolerance);
     if (state.status != NlpStatus::solved || state.result.check.consistent) return;
     const bool last = round + 1 == policy::tighten::kMostRounds;
     const double most_back =

@@ -268,10 +268,10 @@ Report make_report(const RobotModel& model, const ReportInput& as_logged,
           : "there is no replay, because the program was built without npm and three.js";
   plan.replay.rate = std::min(options.rate, kMostKeys / std::max(1e-9, last));
   plan.replay.triangles = options.max_triangles;
-  report(progress, {"report", 0.0, "loci"});
+  report(progress, {"writing the report", 0.0, "loci"});
   Pieces pieces;
   pieces.loci = loci_section(model, input);
-  report(progress, {"report", 0.2, "pictures"});
+  report(progress, {"writing the report", 0.2, "pictures"});
   const std::shared_ptr<const RobotLook> look = options.look ? options.look : robot_look(model);
   pieces.poster = poster(model, look, input);
   ClipOptions clip;
@@ -281,7 +281,7 @@ Report make_report(const RobotModel& model, const ReportInput& as_logged,
       options.snapshots ? *options.snapshots
                         : snapshots_of_run(model, *input.runs.back().log, std::move(clip)),
       input);
-  report(progress, {"report", 0.7, "page"});
+  report(progress, {"writing the report", 0.7, "page"});
   size_t allowed = std::min(options.max_triangles, triangle_count(look->surface));
   for (;;) {
     std::vector<std::string> caps = caps_of(plan, options, *look, no_replay);
@@ -292,7 +292,7 @@ Report make_report(const RobotModel& model, const ReportInput& as_logged,
                      ", although only verdict, tables, curves and one picture are left");
       return {page(model, *look, input, pieces, plan, caps), caps};
     }
-    report(progress, {"report", 0.8, "smaller page"});
+    report(progress, {"writing the report", 0.8, "smaller page"});
   }
 }
 

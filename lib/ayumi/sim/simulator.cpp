@@ -417,8 +417,10 @@ bool Simulator::advance(long ticks, const Progress& progress) {
   for (; ticks > 0 && tick_ < end_; --ticks) {
     if (tick_ % 100 == 0)
       ayumi::report(progress,
-                    {"simulate", static_cast<double>(tick_) / static_cast<double>(planned_),
-                     name_of(options_.controller.type)});
+                    {options_.controller.type == ControllerKind::none
+                         ? std::string("simulating in open loop")
+                         : "simulating with " + std::string(name_of(options_.controller.type)),
+                     static_cast<double>(tick_) / static_cast<double>(planned_), ""});
     if (for_verdict)
       step_for_verdict(ticks == 1 || tick_ + 1 == end_);
     else

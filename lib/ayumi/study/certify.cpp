@@ -64,8 +64,9 @@ void run_numbers(const UncertainTask& task, const std::vector<long>& numbers,
     const CaseResult result = task.run(task.numbers(options.seed, number));
     const std::lock_guard lock(mutex);
     results[static_cast<size_t>(number)] = result;
-    report(progress, {"certify", static_cast<double>(number) / static_cast<double>(results.size()),
-                      "case " + std::to_string(number)});
+    report(progress,
+           {"certifying", static_cast<double>(number) / static_cast<double>(results.size()),
+            "case " + std::to_string(number)});
   });
   if (save && !numbers.empty()) save(results);
 }

@@ -141,7 +141,8 @@ class LocalSearch {
     const LocalPace first = result_;
     for (const double share : kOtherMargins) {
       if (share * half >= options_.path.most_margin) break;  // more than the caller allows
-      report(progress_, {"retime", -1, "the robot falls in open loop; another timing is tried"});
+      report(progress_,
+             {"changing the timing", -1, "the robot falls in open loop; another timing is tried"});
       search(path_scale, share * half, trial);
       if (result_.found && stands(result_.series)) {
         result_.stands = true;
@@ -154,7 +155,7 @@ class LocalSearch {
     double slower = path_scale;
     for (int n = 1; n <= kMostSlower && !keys_fly(pattern_); ++n) {
       slower *= kSlowerPath;
-      report(progress_, {"retime", -1, "uniform scale " + text::fixed(slower, 4)});
+      report(progress_, {"changing the timing", -1, "uniform scale " + text::fixed(slower, 4)});
       try {
         const Pattern pattern = at_scale(slower);
         const CommandSeries series = sample(model_, pattern, {.dt = options_.dt}, progress_);
@@ -282,7 +283,7 @@ class LocalSearch {
     path.spacing = kSearchSpacing;
     double scale = 1, keeps = 0, fails = 0;
     for (int n = 0; n < kMostPaces && scale <= options_.slowest; ++n) {
-      report(progress_, {"retime", -1, "scale " + text::fixed(scale, 4)});
+      report(progress_, {"changing the timing", -1, "scale " + text::fixed(scale, 4)});
       const std::optional<PathLimits::UniformPace> pace = coarse_pace(scale, path);
       const bool foretold = pace && pace->pace > 0;
       if (pace && pace->keeps) {
@@ -337,7 +338,7 @@ class LocalSearch {
 
   // Samples and checks the result. Returns whether the check passes.
   bool play(const Timing& timing) {
-    report(progress_, {"retime", -1, "round " + std::to_string(result_.rounds)});
+    report(progress_, {"changing the timing", -1, "round " + std::to_string(result_.rounds)});
     const std::vector<double> times = times_of(timing.x);
     result_.binding = limits_->binding(timing.u, timing.x, times);
     const TimeCourse course = course_of(timing.x, times);

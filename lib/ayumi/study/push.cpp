@@ -407,14 +407,14 @@ std::vector<PushCase> push_limits(const RobotModel& model, const CommandSeries& 
   std::mutex mutex;
   size_t finished = 0;
   const auto report_progress = [&](const std::string& what) {
-    report(progress, {"push", static_cast<double>(finished) / static_cast<double>(count), what});
+    report(progress, {"pushing", static_cast<double>(finished) / static_cast<double>(count), what});
   };
   if (!all_known) {
     study.baselines.resize(study.phases.size() * study.controllers.size());
     in_parallel(2 * study.controllers.size(), options.threads, study.stop, [&](size_t i) {
       study.run_baselines(i / 2, i % 2 == 1);
       const std::lock_guard lock(mutex);
-      report_progress("baselines");
+      report_progress("runs without a push");
     });
   }
   std::vector<PushCase> cases(count);

@@ -126,7 +126,7 @@ class PaceSearch {
   }
 
   Trial trial(double scale) {
-    report(progress_, {"retime", -1, "scale " + text::fixed(scale, 4)});
+    report(progress_, {"changing the timing", -1, "scale " + text::fixed(scale, 4)});
     ++evaluations_;
     try {
       const CommandSeries series =

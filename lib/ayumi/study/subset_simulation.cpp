@@ -85,7 +85,7 @@ SubsetResult subset_simulation(size_t dimension,
   const auto note_run = [&] {
     const std::lock_guard lock(mutex);
     ++done;
-    report(progress, {"rare failures",
+    report(progress, {"searching for rare failures",
                       static_cast<double>(done % options.runs) / static_cast<double>(options.runs),
                       "level " + std::to_string(result.levels.size() + 1)});
   };

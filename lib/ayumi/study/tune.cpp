@@ -225,7 +225,7 @@ TuneResult tune_gains(const RobotModel& model, const CommandSeries& series,
         }
         const TuneFigures figures = tuner.evaluate(gains);
         ++result.choices;
-        report(progress, {"tune", static_cast<double>(round) / options.rounds,
+        report(progress, {"tuning", static_cast<double>(round) / options.rounds,
                           "objective " + text::fixed(figures.objective, 4) + " with " + name +
                               " = " + text::brief(value)});
         if (figures.objective > (1 - kImprovement) * result.after.objective) continue;

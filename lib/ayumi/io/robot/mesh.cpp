@@ -309,7 +309,7 @@ void watched(const Progress& progress, std::atomic<bool>& stop, const Work& work
   if (!progress) return work();
   std::future<void> done = std::async(std::launch::async, work);
   try {
-    do report(progress, {"meshes", -1, ""});
+    do report(progress, {"reading the meshes", -1, ""});
     while (done.wait_for(kPause) != std::future_status::ready);
   } catch (...) {
     stop = true;

@@ -57,7 +57,7 @@ WrittenLog LogWriter::finish(SimulationLog about, const std::filesystem::path& p
     write(log_head(about, log.rows));
     for (size_t i = 0; i < written_.size(); ++i) {
       const double done = static_cast<double>(i) / static_cast<double>(written_.size());
-      if (i > 0) report(progress, {"write", done, ""});
+      if (i > 0) report(progress, {"writing the log", done, ""});
       const auto& [begin, size, rows] = written_[i];
       const std::string block = scratch_.read(begin, size);
       write(block);
