@@ -252,7 +252,7 @@ const std::array<Job, 8> kJobs = {{
     {"laws", "other control laws, with a push and noise", laws_text,
      "f6b184faadf56210c25f6de3264aea62f94b519634437e5907fea53849e40f12"},
     {"check", "findings and likely causes of patterns with mistakes", check_text,
-     "1a4d448e321962bb909d9e3d8a191daa297465acc3f50820fa51788ac8680048"},
+     "0053ee9c99d3790e04aa3bd0726702f0bca268d434955f24985aac01b3f39877"},
     {"repair", "a repaired walk", repair_text,
      "1fc3abdbbca1ba9965f8162b7812820465c6c5e4e11cb991a59f00eb1a1f8b86"},
     {"push", "limits of pushes", push_text,

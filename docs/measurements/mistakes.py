@@ -560,7 +560,7 @@ class Robots:
             words = said["error"] if isinstance(said["error"], str) else said["error"]["message"]
             words = words.replace(str(file) + ": ", "")
             if words.startswith("likely cause: "):
-                words = re.split(r"; or /|; in addition, /|; the first error is: ", words[len("likely cause: "):])[0]
+                words = re.split(r"\. Or /|\. In addition, /|\. First error: ", words[len("likely cause: "):])[0]
             return "unreadable", words
         causes = said["likely_mistakes"]
         if causes:

@@ -76,9 +76,9 @@ TEST(LikelyMistakes, ASearchWithoutACauseComesLast) {
                "a.json: /phases/1: out of reach; no likely cause was found");
   const Error explained = with_mistakes(error, pattern, {{"/units", "in degrees"}});
   EXPECT_STREQ(explained.what(),
-               "a.json: likely cause: /units: in degrees; the first error is: /phases/1: out of reach");
+               "a.json: likely cause: /units: in degrees. First error: /phases/1: out of reach");
   EXPECT_EQ(explained.words(),
-            "likely cause: /units: in degrees; the first error is: /phases/1: out of reach");
+            "likely cause: /units: in degrees. First error: /phases/1: out of reach");
   EXPECT_EQ(explained.place().inside, "/units") << "the place to change";
 }
 
@@ -91,7 +91,7 @@ TEST(LikelyMistakes, AlternativesOfALaterRoundAreJoinedByOr) {
   const std::vector<Mistake> mistakes = {mistake("a", 0), mistake("b", 0), mistake("c", 1),
                                          mistake("d", 1), mistake("e", 2)};
   EXPECT_EQ(with_mistakes(error, sound_walk(), mistakes).words(),
-            "likely cause: a; or b; in addition, c; or d; in addition, e; the first error is: "
+            "likely cause: a. Or b. In addition, c. Or d. In addition, e. First error: "
             "/phases/9: out of reach");
 }
 

@@ -164,10 +164,11 @@ std::vector<Mistaken> make_list() {
   add("a segment too long for its stoop", small(), jump, "/keyframes/1: t is 1.1 s, so .* lasts",
       [](Pattern& p) { p.keyframes[1].t = 1.1; });
   add("the foot on the wrong side", small(), steps,
-      "/phases/3: the left foot's y is -0.039 m; on the other side, at 0.039 m .*exchanged",
+      "/phases/3: the left foot's y is -0.039 m; on the other side .0.039 m; .*exchanged",
       [](Pattern& p) { swing(p, 3).to.position.y() *= -1; });
   add("a phase that names the wrong foot", small(), steps,
-      "/phases/3: support is left .*exchanged; with support right", [](Pattern& p) {
+      "/phases/3: the phase has .support.: .left. .*exchanged; with .support.: .right.",
+      [](Pattern& p) {
         p.phases[3].support = Support::left;
         swing(p, 3).foot = Side::right;
       });

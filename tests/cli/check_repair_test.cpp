@@ -69,7 +69,7 @@ TEST_F(CheckRepair, TheMistakeIsNamedFirst) {
                          "decimal point one place further left (0.09 m), or with values up to "),
             std::string::npos)
       << far.err;
-  EXPECT_NE(far.err.find("the first error is: /phases/5: t = "), std::string::npos);
+  EXPECT_NE(far.err.find("First error: /phases/5: t = "), std::string::npos);
   // For a value that is wrong by a factor of a thousand, the message also states the range of
   // possible values. This range contains the value that is suggested.
   write(folder / "step.json", R"({"format": "ayumi.pattern/1", "robot": "hoap1",

@@ -557,12 +557,12 @@ Error with_mistakes(const Error& error, const Pattern& pattern,
   int round = 0;
   for (const Mistake& mistake : mistakes) {
     if (!mistake.is_cause) continue;
-    if (!causes.empty()) causes += mistake.round > round ? "; in addition, " : "; or ";
+    if (!causes.empty()) causes += mistake.round > round ? ". In addition, " : ". Or ";
     causes += mistake.text();
     round = mistake.round;
   }
   const std::string words =
-      "likely cause: " + causes + "; the first error is: " + (in_file ? error.words() : error.what());
+      "likely cause: " + causes + ". First error: " + (in_file ? error.words() : error.what());
   SourcePlace place = error.place();
   // What should be changed is where the first cause is.
   if (in_file && cause->place.starts_with("/")) place.inside = cause->place;

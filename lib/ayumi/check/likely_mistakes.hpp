@@ -52,7 +52,7 @@ std::vector<Mistake> likely_mistakes(const RobotModel& model, const Pattern& pat
 /// The words of those mistakes that are causes.
 std::vector<std::string> cause_texts(const std::vector<Mistake>& mistakes);
 
-/// The error with the message "likely cause: ...; the first error is: WORDS", or `error` itself if
+/// The error with the message "likely cause: .... First error: WORDS", or `error` itself if
 /// no mistake is likely. If a search found no cause, the changes that it tried follow its message.
 /// If the error is in the pattern's file, the name of the file stays in front.
 Error with_mistakes(const Error& error, const Pattern& pattern,

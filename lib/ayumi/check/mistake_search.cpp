@@ -363,7 +363,7 @@ class Search {
     return {rank,
             {value.place, value.words + " is " + value.text(pattern_, number),
              (value.across
-                  ? "on the other side, at " + negated + " (perhaps left and right were exchanged)"
+                  ? "on the other side (" + negated + "; perhaps left and right were exchanged)"
                   : "with the other sign (" + negated + ")") +
                  more + ","},
             [value](Pattern& p) { value.scale(p, -1); }};

@@ -140,7 +140,7 @@ Advice vertical_force_advice(const JudgedMotion&, const FindingWindow& window) {
 
 Advice point_mass_advice(const JudgedMotion&, const FindingWindow& window) {
   return "the point-mass model would have a ZMP error of " + in_mm(window.worst.value) +
-         " here, so compute this motion with the full model";
+         " here; nothing has to change, because Ayumi computes the motion with the full model";
 }
 
 std::string cog_infeasibility(const Finding& f, double) {

@@ -91,10 +91,10 @@ Advice torque_advice(const JudgedMotion& motion, const FindingWindow& window) {
            " has no motor (kp of its servo is 0), but the motion needs one there; if the joint has "
            "a motor, state kp in the sidecar";
   return "lower the load on " + motion.model.dofs()[v.item].name +
-         ": if the inertia is the cause, " +
+         ". If the inertia is the cause, " +
          slow_down_text(std::sqrt(std::abs(v.value / v.limit))) +
-         "; if the weight is the cause, shorten the lever of the weight, for example by "
-         "straightening the leg";
+         ". If the weight is the cause, shorten the lever of the weight" +
+         straighter_leg(motion.model, v.item);
 }
 
 std::string torque_infeasibility(const Finding& f, double violation) {

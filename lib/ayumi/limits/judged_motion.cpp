@@ -3,6 +3,8 @@
 #include <limits>
 
 #include "ayumi/base/text.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/dynamics/robot_data.hpp"
 #include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
@@ -114,6 +116,15 @@ std::string ratio_text(double ratio) { return text::fixed(std::ceil(100 * ratio 
 std::string slow_down_text(double factor) {
   return "stretch this window to " + text::fixed(std::ceil(100 * factor) / 100, 2) +
          " times its length";
+}
+
+std::string straighter_leg(const RobotModel& model, int dof) {
+  if (model.dofs()[dof].prismatic || !model.is_leg_joint(dof)) return "";
+  RobotData data(model);
+  update_positions(model, model.rest_state(), data);
+  int direction = 0;
+  data.axis[model.dofs()[dof].body].cwiseAbs().maxCoeff(&direction);
+  return direction == 1 ? ", for example by straightening the leg" : "";
 }
 
 }  // namespace ayumi

@@ -164,6 +164,9 @@ std::string angle_size(double radians, bool degrees, int digits = 2);
 std::string ratio_text(double ratio);  ///< a ratio rounded up to 0.01, such as "1.04"
 /// Advice such as "stretch this window to 1.04 times its length".
 std::string slow_down_text(double factor);
+/// The example ", for example by straightening the leg" for joints whose load it reduces: the
+/// joints of a leg that turn about the lateral axis in the rest posture; empty for other joints.
+std::string straighter_leg(const RobotModel& model, int dof);
 inline constexpr const char* kOrRepair = ", or use `ayumi repair`";
 
 }  // namespace ayumi

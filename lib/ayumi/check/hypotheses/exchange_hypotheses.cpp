@@ -89,22 +89,23 @@ void phase_sides(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
     const Phase& phase = of.pattern.phases[i];
     if (!is_single(phase.support) || !of.reaches(i)) continue;
     const Support meant = opposite(phase.support);
-    made.push_back(
-        {Rank::exchange,
-         {of.phase_place(i),
-          std::string("support is ") + name_of(phase.support) +
-              (phase.swing ? std::string(" and the ") + name_of(phase.swing->foot) + " foot swings"
-                           : "") +
-              "; perhaps left and right were exchanged",
-          std::string("with support ") + name_of(meant) +
-              (phase.swing ? std::string(" and a swing of the ") +
-                                 name_of(other(phase.swing->foot)) + " foot"
-                           : "")},
-         [i, meant](Pattern& p) {
-           p.phases[i].support = meant;
-           if (p.phases[i].swing) p.phases[i].swing->foot = other(p.phases[i].swing->foot);
-         },
-         swings_thrice(of, i) ? -1.0 : 0.0});
+    made.push_back({Rank::exchange,
+                    {of.phase_place(i),
+                     std::string("the phase has \"support\": \"") + name_of(phase.support) + "\"" +
+                         (phase.swing ? std::string(" and a swing of the ") +
+                                            name_of(phase.swing->foot) + " foot"
+                                      : "") +
+                         "; perhaps left and right were exchanged",
+                     std::string("with \"support\": \"") + name_of(meant) + "\"" +
+                         (phase.swing ? std::string(" and a swing of the ") +
+                                            name_of(other(phase.swing->foot)) + " foot"
+                                      : "")},
+                    [i, meant](Pattern& p) {
+                      p.phases[i].support = meant;
+                      if (p.phases[i].swing)
+                        p.phases[i].swing->foot = other(p.phases[i].swing->foot);
+                    },
+                    swings_thrice(of, i) ? -1.0 : 0.0});
     add_foothold_exchanges(of, i, made);
   }
 }
