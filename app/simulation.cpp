@@ -21,7 +21,8 @@ void add_simulation_options(Command& command, SimulationChoice& choice) {
       .add_option(
           "--controller", choice.controller,
           "Controller (default: the controller of the pattern). The controllers of Ayumi are dtad "
-          "and viip; none is the open loop. The controllers preview, foot-guided and dcm-step "
+          "and viip. The name 'none' selects the open loop. The controllers preview, foot-guided "
+          "and dcm-step "
           "are other laws, for a comparison. dtad-literal, viip-landings and viip-nofeedback are "
           "variants of dtad and viip. They only demonstrate what single parts of these laws "
           "contribute.")

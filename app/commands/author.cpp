@@ -73,8 +73,8 @@ void add_author(Command& app, Context& context) {
   command->footer(
       "Examples:\n  ayumi author walk.json\n  ayumi author walk.json --open\n"
       "  ayumi author walk.json --profile hoap1-strong --port 8080\n"
-      "The page is served on this machine alone. Everyone who knows the address can change the "
-      "file, so keep the address secret.");
+      "Only programs on this machine can open the page. Each user of this machine who knows the "
+      "address can change the file, so keep the address secret.");
   auto options = std::make_shared<AuthorCommand>();
   command->add_option("PATTERN", options->pattern, "Pattern file.")->required();
   command->add_option("--set", options->set, "Set a parameter that the pattern declares.")

@@ -137,9 +137,11 @@ void add_diff(Command& app, Context& context) {
       ->type_name("JOINT=FACTOR")
       ->allow_extra_args(false);
   command
-      ->add_option("--safety", options.safety,
-                   "Factor on the cost of missing safety that is printed, as for repair "
-                   "(default: the factor in the pattern; 1 if the pattern has none).")
+      ->add_option(
+          "--safety", options.safety,
+          "Factor on the cost of small distances from the limits. The output contains this "
+          "cost, and repair has the same factor (default: the factor in the pattern; 1 if the "
+          "pattern has none).")
       ->check(number_within(0.0, 1e6))
       ->type_name("FACTOR");
   add_pattern_options(*command, options.input);

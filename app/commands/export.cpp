@@ -185,7 +185,8 @@ void set_rate(const ExportOptions& options, Source& source) {
   const std::string refusal = refusal_of_interval(
       source.model, written_layout(source.model, options.layout), source.reference.dt);
   if (!refusal.empty())
-    fail(ErrorCode::bad_file, {options.output}, refusal + "; choose another one with --interval");
+    fail(ErrorCode::bad_file, {options.output},
+         refusal + "; choose one of these intervals with --interval");
 }
 
 Source source_of_table(const ExportOptions& options, const Context& context,
@@ -479,7 +480,8 @@ std::vector<std::string> refusals(const ExportOptions& options, const Source& so
 
 std::string words_of(const TableServo& servo) {
   if (servo.content == "ideal")
-    return "the table contains joint angles, not servo targets (--servo ideal); limits of "
+    return "the table contains joint angles, not servo targets (--servo ideal). It was judged by "
+           "the limits of "
            "profile " +
            servo.profile;
   const bool one = servo.lag.find(' ') == std::string::npos;
@@ -857,9 +859,11 @@ void add_export(Command& app, Context& context) {
   command->add_flag("--pushed", options->pushed,
                     "Export the table of the disturbed run. The head of the table says that it "
                     "contains the reactions to disturbances.");
-  command->add_flag("--force-unsafe", options->force_unsafe,
-                    "Write the table even if it is unsafe or not meant for a robot. The head and "
-                    "the name of the table then say so, for example walk.UNSAFE.csv.");
+  command->add_flag(
+      "--force-unsafe", options->force_unsafe,
+      "Write the table even if it is unsafe, or if `export` refuses it for a robot, for example "
+      "because the robot fell. The head and "
+      "the name of the table then say so, for example walk.UNSAFE.csv.");
   command
       ->add_option(
           "--servo", options->servo,

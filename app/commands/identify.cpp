@@ -203,7 +203,8 @@ void add_identify(Command& app, Context& context) {
   command
       ->add_option("--loads", options.loads,
                    "Recording of the load cells of the feet: raw readings (the sidecar has the "
-                   "calibration), or a table with fz.left[N] and fz.right[N].")
+                   "calibration), or a table with the columns \"fz.left[N]\" and \"fz.right[N]\" "
+                   "(forces in newtons).")
       ->type_name("F");
   command
       ->add_option(

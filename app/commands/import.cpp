@@ -185,10 +185,10 @@ void add_import(Command& app, Context& context) {
   command
       ->add_option(
           "--measured-at", at,
-          "What the angles are. encoder: readings or targets of encoders; the offsets that "
-          "ROBOT states are added to them. joint: joint angles (default: encoder for "
-          "--commands and for formats that a robot plays or records, otherwise joint). "
-          "For a table that Ayumi wrote, the offsets in the head of the table are used.")
+          "What the angles are. encoder: measured or commanded angles as the encoders count them. "
+          "Ayumi adds to them the offsets that ROBOT states. joint: joint angles (default: "
+          "encoder with --commands and for files of robots, such as HOAP sequences; otherwise "
+          "joint). For a table that Ayumi wrote, the offsets in the head of the table are used.")
       ->check(one_of({"encoder", "joint"}));
   command
       ->add_option("--smooth", options.how.reading.smooth,

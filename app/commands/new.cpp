@@ -1008,7 +1008,8 @@ void add_new(Command& app, Context& context) {
   Command* walk = command->add_subcommand("walk", "walk from rest to rest");
   add_walk(*walk, options);
   walk->callback([shared, &context] { new_walk(context, *shared); });
-  Command* step = command->add_subcommand("step", "step in place, or one step forward");
+  Command* step =
+      command->add_subcommand("step", "steps in place, or one step forward with --length");
   add_step(*step, options);
   step->callback([shared, &context] { new_step(context, *shared); });
   Command* march = command->add_subcommand("march", "step in place with high steps");

@@ -379,7 +379,7 @@ TEST(PlantedMistakes, SidesThatAreAllExchangedAreNamed) {
       ASSERT_FALSE(found.empty());
       EXPECT_TRUE(std::regex_search(
           found.front().text(),
-          std::regex("^/phases/1: . of . footholds have the y of the other foot's side .* the "
+          std::regex("^/phases/1: . of . footholds lie on the side of the other foot .* the "
                      "pattern is consistent$")))
           << found.front().text();
     }

@@ -324,7 +324,8 @@ TEST_F(ChecksOn80Columns, WhatIsShortenedIsPrintedWithAll) {
   EXPECT_NE(all.find("make the motion of r_knee smoother"), std::string::npos) << all;
   // A line that is not for a terminal is not broken into several.
   ::unsetenv("COLUMNS");
-  EXPECT_NE(ayumi({"check", "jump.json", "-q"}).out.find(" mm in ZMP and 0.00 N in force; the ZMP"),
+  EXPECT_NE(ayumi({"check", "jump.json", "-q"})
+                .out.find(" mm in ZMP and 0.00 N in f_z; that of the point mass"),
             std::string::npos);
 }
 

@@ -573,7 +573,7 @@ TEST(SweepCommand, ALimitOfTimeOfOneCase) {
   EXPECT_EQ(limited.exit_code, 1) << limited.err;
   EXPECT_NE(limited.out.find("1 stand"), std::string::npos) << limited.out;
   EXPECT_NE(
-      limited.out.find("case 1 could not be run: the stage 'simulate' did not end within 0.4 s "
+      limited.out.find("case 1 could not be run: the stage 'simulating' did not end within 0.4 s "
                        "of processor time; a larger --case-limit allows more time"),
       std::string::npos)
       << limited.out;

@@ -372,7 +372,7 @@ class LongWork(unittest.TestCase):
         ayumi.simulate(short_stand(), progress=lambda *event: heard.append(event))
         self.assertTrue(heard)
         stage, fraction, _ = heard[-1]
-        self.assertEqual(stage, "simulate")
+        self.assertEqual(stage, "simulating with dtad")
         self.assertTrue(0 <= fraction <= 1)
         with self.assertRaises(ayumi.Interrupted):
             ayumi.simulate(short_stand(), progress=lambda *event: False)

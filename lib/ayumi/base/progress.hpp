@@ -10,7 +10,7 @@
 namespace ayumi {
 
 struct ProgressEvent {
-  std::string stage;  ///< name of the stage, such as "simulate"
+  std::string stage;  ///< name of the stage, for people, such as "simulating with dtad"
   /// Fraction of this stage that is done, from 0 to 1; negative if it is unknown.
   double fraction = 0;
   std::string detail;  ///< free text, may be empty

@@ -89,7 +89,8 @@ std::string flight_words(const RobotModel& model, const CommandSeries& series,
          text::brief(possible, 2) + " s (a rise of " + rise(possible) +
          ") with the legs in these postures, but the flight lasts " + text::brief(lasts, 3) +
          " s (a rise of " + rise(lasts) +
-         "). The stoops and other joints may allow only a shorter flight";
+         "). This bound is for this joint alone: the stoops and the other joints may make the "
+         "possible flight shorter still";
 }
 
 ActuatorNeed need_of(const RobotModel& model, const CommandSeries& series,
@@ -129,9 +130,10 @@ ActuatorNeed actuator_need(const RobotModel& model, const std::vector<KeyedGoal>
     ActuatorNeed need =
         need_of(model, goal.motion, options, check_consistency(model, goal.motion, options));
     if (need.text.empty()) continue;
-    need.text =
-        goal.place + ": " + need.text +
-        " (times are counted from the beginning of the motion that was planned for this goal)";
+    need.text = goal.place + ": " + need.text +
+                " (the time of a joint is counted from the beginning of the motion that was "
+                "planned for this "
+                "goal)";
     return need;
   }
   return {};

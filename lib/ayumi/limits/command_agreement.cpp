@@ -134,7 +134,7 @@ Advice zmp_advice(const JudgedMotion&, const FindingWindow& window) {
 Advice vertical_force_advice(const JudgedMotion&, const FindingWindow& window) {
   const double value = window.worst.value;
   return {"the motion needs " + text::fixed(std::abs(value), 1) + " N " +
-              (value > 0 ? "more" : "less") + " than the commanded f_z: remove the f_z keys",
+              (value > 0 ? "more" : "less") + " than the commanded f_z: remove the keys \"fz\"",
           kOrRepair};
 }
 

@@ -415,7 +415,7 @@ void Simulator::step_for_verdict(bool last) {
 bool Simulator::advance(long ticks, const Progress& progress) {
   const bool for_verdict = verdict_only_ && !options_.true_state && !options_.targets;
   for (; ticks > 0 && tick_ < end_; --ticks) {
-    if (tick_ % 100 == 0)
+    if (progress && tick_ % 100 == 0)
       ayumi::report(progress,
                     {options_.controller.type == ControllerKind::none
                          ? std::string("simulating in open loop")

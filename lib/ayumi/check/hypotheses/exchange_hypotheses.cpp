@@ -148,13 +148,14 @@ void all_sides(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
   }
   if (crossed.size() < 2 || 2 * crossed.size() <= swings) return;
   const auto add = [&](const std::string& instead, Mend mend) {
-    made.push_back({Rank::geometry,
-                    {of.phase_place(crossed.front()),
-                     std::to_string(crossed.size()) + " of " + std::to_string(swings) +
-                         " footholds have the y of the other foot's side (y is positive to the "
-                         "left); perhaps left and right were exchanged",
-                     instead},
-                    std::move(mend)});
+    made.push_back(
+        {Rank::geometry,
+         {of.phase_place(crossed.front()),
+          std::to_string(crossed.size()) + " of " + std::to_string(swings) +
+              " footholds lie on the side of the other foot (y is positive to the left); "
+              "perhaps left and right were exchanged",
+          instead},
+         std::move(mend)});
   };
   add("with the other sign of y in these footholds", [crossed](Pattern& p) {
     for (const size_t i : crossed) p.phases[i].swing->to.position.y() *= -1;

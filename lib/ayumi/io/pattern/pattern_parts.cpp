@@ -58,10 +58,14 @@ Swing read_swing(const JsonNode& node, Support support, PatternScope& scope) {
   Swing swing;
   swing.foot = read_side(node.at("foot"));
   if (supports(support, swing.foot))
-    node.at("foot").complain("the " + std::string(name_of(swing.foot)) +
-                             " foot carries the robot in this phase (support " + name_of(support) +
-                             "), so this foot cannot swing. The support or the swing names the "
-                             "wrong foot; perhaps left and right were exchanged");
+    node.at("foot").complain(
+        "the " + std::string(name_of(swing.foot)) +
+        " foot carries the robot in this phase (support " + name_of(support) +
+        "), so this foot cannot swing" +
+        (support == Support::both
+             ? ". Let the other foot alone carry the robot, or leave out the swing"
+             : ". The support or the swing names the wrong foot; perhaps left "
+               "and right were exchanged"));
   if (node.has("step") == node.has("to"))
     node.complain(node.has("to")
                       ? "\"to\" and \"step\" both say where the foot lands; keep one of them"
