@@ -446,7 +446,7 @@ NEW = [
             r"^/keyframes/\d: the pitch of the trunk is -60 deg"),
     Mistake("a COG beside the feet", "squat", cog_to_the_other_side, r"^/keyframes/1.*COG's y"),
     Mistake("f_z in kg", "squat", force_in_kg, r"^/keyframes/1: f_z is .*kg"),
-    Mistake("f_z of two weights", "squat", force_of_two_weights, r"^/keyframes/1: f_z is"),
+    Mistake("f_z of twice the robot's weight", "squat", force_of_two_weights, r"^/keyframes/1: f_z is"),
     Mistake("a foothold turned by 90 degrees", "walk", one_foothold_turned,
             r"^/phases/3.*yaw is 90 deg"),
     Mistake("a foothold on the other foot", "walk", foot_on_foot,
