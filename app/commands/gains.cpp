@@ -90,7 +90,7 @@ std::string report(const RobotModel& model, const GainStudy& d) {
          "for the time of a step. The loop stays stable " +
          (d.largest_ka >= GainStudy::kMostKa ? "for ka beyond " + text::brief(GainStudy::kMostKa)
                                              : "for ka up to " + text::fixed(d.largest_ka, 2)) +
-         ". The slowest modes of an error (" + weakest.name + "):\n";
+         ". The slowest modes of an error (" + name_of(weakest) + "):\n";
   int shown = 0;
   for (const Complex& pole : d.weakest.analysis.poles)
     if (pole.imag() >= 0 && -pole.real() > kShown * w && shown++ < 4) out += mode_text(pole);

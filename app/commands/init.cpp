@@ -119,7 +119,7 @@ SidecarGains gains_for(const RobotModel& model) {
     result.why =
         "with the default gains, an error of the standing robot grows by the factor e in " +
         text::brief(-1 / study.weakest.analysis.decay, 2) + " s (" +
-        study.loops[study.weakest.index].name +
+        name_of(study.loops[study.weakest.index]) +
         "), because the servos are soft. Among the gains that were tried, these are the nearest to "
         "the default gains that let the error " +
         (decay > 0

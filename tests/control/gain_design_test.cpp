@@ -23,7 +23,7 @@ struct Ankle {
 /// The loop of a point mass on an ankle: x'' = w^2 (x + s (target - x - T x')). Rates are taken at
 /// the end of a tick.
 LoopModel loop_of(const Ankle& a) {
-  LoopModel loop{.name = "one ankle", .height = a.height, .tick = a.tick, .delay = a.delay};
+  LoopModel loop{.height = a.height, .tick = a.tick, .delay = a.delay};
   const double w2 = kGravity / a.height, s = a.stiffness / (a.mass * kGravity * a.height);
   const double T = a.damping / a.stiffness;
   Eigen::Matrix2d motion, input;

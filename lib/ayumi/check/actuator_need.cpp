@@ -132,8 +132,7 @@ ActuatorNeed actuator_need(const RobotModel& model, const std::vector<KeyedGoal>
     if (need.text.empty()) continue;
     need.text = goal.place + ": " + need.text +
                 " (the time of a joint is counted from the beginning of the motion that was "
-                "planned for this "
-                "goal)";
+                "planned for this goal)";
     return need;
   }
   return {};

@@ -144,14 +144,16 @@ Finding finding_of(const JudgedMotion& motion, const std::vector<FindingWindow>&
   f.where = place_text(motion, v);
   f.in_degrees = motion.degrees;
   const Advice advice = spec.advice(motion, window);
-  f.remedy = advice.remedy;
-  f.hint = advice.remedy + advice.or_repair;
+  f.action = advice.action;
+  f.remedy = advice.remedy();
+  f.hint = f.remedy + advice.or_repair;
   if (window.cause >= 0) {
     const Violation& cause = windows[window.cause].worst;
     f.cause = window.cause;
     f.follows_from = kind_and_place(cause.kind, place_text(motion, cause)) + " at " +
                      text::fixed(cause.sample * dt, 3) + " s";
     f.hint = f.remedy = "follows from " + f.follows_from + ": correct that finding first";
+    f.action.clear();
   }
   return f;
 }

@@ -285,13 +285,11 @@ std::string remedy(const std::vector<LoopModel>& loops, const DtadParams& params
          "because the servos are too soft for this robot: use stiffer servos";
 }
 
-// Support and direction of a loop with a name such as "both feet, sideways", in words.
-std::string oscillation(const std::string& name) {
-  const size_t comma = name.find(", ");
-  if (comma == std::string::npos) return "The robot oscillates";
-  const std::string feet = name.substr(0, comma), direction = name.substr(comma + 2);
-  return "With " + feet + " on the ground, the robot oscillates " +
-         (direction == "forward" ? "forwards and backwards" : direction);
+// Support and direction of a loop in words.
+std::string oscillation(const LoopModel& loop) {
+  return std::string("With ") + (loop.both_feet ? "both feet" : "one foot") +
+         " on the ground, the robot oscillates " +
+         (loop.sideways ? "sideways" : "forwards and backwards");
 }
 
 /// The growth of the loop's errors in words; empty if the loop is stable.
@@ -301,7 +299,7 @@ std::string growth(const std::vector<LoopModel>& loops, const DtadParams& params
   const LoopModel& loop = loops[weakest.index];
   return "controller gains: the loop is unstable with ka = " + text::brief(params.zmp_gain) +
          ", tau_z = " + text::brief(params.zmp_filter) + " and sensors and servos that are " +
-         text::brief(1e3 * loop.delay) + " ms late. " + oscillation(loop.name) + " at " +
+         text::brief(1e3 * loop.delay) + " ms late. " + oscillation(loop) + " at " +
          text::fixed(weakest.analysis.frequency, 1) +
          " Hz, and an error grows by the factor e in " +
          text::brief(-1 / weakest.analysis.decay, 2) + " s; " + remedy(loops, params);

@@ -221,6 +221,11 @@ LoopModel stance_loop(Stance& stance, int axis, const LoopModel& like) {
 
 }  // namespace
 
+std::string name_of(const LoopModel& loop) {
+  return std::string(loop.both_feet ? "both feet" : "one foot") +
+         (loop.sideways ? ", sideways" : ", forward");
+}
+
 std::vector<LoopModel> stance_loops(const RobotModel& model, const ActuatorLimits& actuators,
                                     double height, double tick) {
   LoopModel like{.height = height, .tick = tick};
@@ -241,8 +246,8 @@ std::vector<LoopModel> stance_loops(const RobotModel& model, const ActuatorLimit
     stance.stand_on(both ? std::vector<Side>{Side::left, Side::right}
                          : std::vector<Side>{Side::left});
     for (const int axis : {0, 1}) {
-      like.name =
-          std::string(both ? "both feet" : "one foot") + (axis == 0 ? ", forward" : ", sideways");
+      like.both_feet = both;
+      like.sideways = axis == 1;
       like.tolerated_growth = both ? 0 : std::sqrt(kGravity / height) / kStepTime;
       loops.push_back(stance_loop(stance, axis, like));
     }

@@ -14,10 +14,11 @@ namespace ayumi {
 /// Deviations along one horizontal axis from tick to tick. The state of the body depends on the
 /// model; ref COG and its velocity are constant during a tick.
 struct LoopModel {
-  std::string name = {};  ///< name, such as "both feet, sideways"
-  double height = 0;      ///< height of the COG above the ground [m]
-  double tick = 0.001;    ///< tick of the controller [s]
-  double delay = 0;       ///< delay of the sensors and of the servos' targets [s]
+  bool both_feet = false;  ///< whether both feet are on the ground; otherwise one foot
+  bool sideways = false;   ///< whether it describes the motion sideways; otherwise forwards
+  double height = 0;       ///< height of the COG above the ground [m]
+  double tick = 0.001;     ///< tick of the controller [s]
+  double delay = 0;        ///< delay of the sensors and of the servos' targets [s]
   /// Growth of an error with which the loop still counts as stable [1/s].
   double tolerated_growth = 0;
   Eigen::MatrixXd body = {};  ///< state for each unit of the previous state
@@ -28,6 +29,9 @@ struct LoopModel {
   /// Measured ZMP for each unit of ref COG and of its velocity.
   Eigen::RowVector2d zmp_reference{0, 0};
 };
+
+/// Support and direction of a loop, such as "both feet, sideways".
+std::string name_of(const LoopModel& loop);
 
 /// The whole robot on both feet and on the left foot, forward and sideways; masses, rotors, servos
 /// and soles are those of the plant. `height` is that of the COG [m]. The delay is that of the

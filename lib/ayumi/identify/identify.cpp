@@ -340,9 +340,7 @@ class Advice {
   Advice(const TypeFit& type, const IdentifiedJoint& joint, bool load_known) : fit_(type.fit) {
     if (!load_known) {
       say("both feet are on the ground, so each leg may push against the other through the ground, "
-          "and "
-          "the load of a single leg is not known: "
-          "record a motion that lifts each foot");
+          "and the load of a single leg is not known: record a motion that lifts each foot");
       return;
     }
     if (type.delay_takes_damping)

@@ -74,8 +74,8 @@ bool angular_momentum_holds(JudgedMotion& motion, const Violation& v, double pac
 }
 
 Advice angular_momentum_advice(const JudgedMotion&, const FindingWindow&) {
-  return "the angular momentum cannot change in flight: move arms and legs so that their angular "
-         "momenta cancel each other";
+  return {"the angular momentum cannot change in flight",
+          "move arms and legs so that their angular momenta cancel each other", ""};
 }
 
 std::string angular_momentum_infeasibility(const Finding&, double) {

@@ -101,9 +101,8 @@ Place body_pair_place(const JudgedMotion& motion, const Violation& v) {
 
 Advice clearance_advice(const JudgedMotion&, const FindingWindow& window) {
   const double clearance = window.worst.value;
-  return clearance < 0
-             ? "these bodies overlap by " + in_mm(clearance) + ": move them apart"
-             : "these bodies are only " + in_mm(clearance) + " apart: move them further apart";
+  if (clearance < 0) return {"these bodies overlap by " + in_mm(clearance), "move them apart", ""};
+  return {"these bodies are only " + in_mm(clearance) + " apart", "move them further apart", ""};
 }
 
 std::string clearance_infeasibility(const Finding& f, double) {

@@ -118,24 +118,23 @@ Place vertical_place(const JudgedMotion&, const Violation&) { return AxisPlace{2
 Advice cog_advice(const JudgedMotion&, const FindingWindow& window) {
   const Violation& v = window.worst;
   return {"the COG of the posture is " + in_mm(v.value) +
-              " away from the commanded COG, mostly along " + axis_name(v.detail) +
-              ": change the COG key or the posture",
+              " away from the commanded COG, mostly along " + axis_name(v.detail),
+          "change the COG key or the posture",
           std::string(kOrRepair) + ", which keeps the posture"};
 }
 
 Advice zmp_advice(const JudgedMotion&, const FindingWindow& window) {
   const Violation& v = window.worst;
   return {"the ZMP of the motion is " + in_mm(v.value) +
-              " away from the commanded ZMP, mostly along " + axis_name(v.detail) +
-              ": change the ZMP key or the motion",
-          std::string(kOrRepair) + ", which keeps the motion"};
+              " away from the commanded ZMP, mostly along " + axis_name(v.detail),
+          "change the ZMP key or the motion", std::string(kOrRepair) + ", which keeps the motion"};
 }
 
 Advice vertical_force_advice(const JudgedMotion&, const FindingWindow& window) {
   const double value = window.worst.value;
   return {"the motion needs " + text::fixed(std::abs(value), 1) + " N " +
-              (value > 0 ? "more" : "less") + " than the commanded f_z: remove the keys \"fz\"",
-          kOrRepair};
+              (value > 0 ? "more" : "less") + " than the commanded f_z",
+          "remove the keys \"fz\"", kOrRepair};
 }
 
 Advice point_mass_advice(const JudgedMotion&, const FindingWindow& window) {

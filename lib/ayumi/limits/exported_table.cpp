@@ -188,8 +188,8 @@ Advice target_step_advice(const JudgedMotion& motion, const FindingWindow& windo
   const Violation& v = window.worst;
   return {refused_text(motion, v) + " moves " +
               text::fixed(100 * (std::abs(v.value / v.limit) - 1), 1) + " % further in " +
-              text::brief(1e3 * motion.series.dt, 3) + " ms than the motor can follow: move " +
-              motion.model.dofs()[v.item].name +
+              text::brief(1e3 * motion.series.dt, 3) + " ms than the motor can follow",
+          "move " + motion.model.dofs()[v.item].name +
               " more slowly, or accelerate this joint more gently here",
           kOrRepair};
 }
@@ -201,7 +201,8 @@ Advice table_position_advice(const JudgedMotion& motion, const FindingWindow& wi
   const std::string amount = v.detail == kInCounts ? text::fixed(beyond, 0) + " counts"
                              : dof.prismatic       ? text::brief(1e3 * beyond, 3) + " mm"
                                                    : angle_size(beyond, motion.degrees, 3);
-  return {refused_text(motion, v) + " is " + amount + " beyond its range: move " + dof.name +
+  return {refused_text(motion, v) + " is " + amount + " beyond its range",
+          "move " + dof.name +
               " back by this amount, or let the joint reverse its direction more gently",
           kOrRepair};
 }
@@ -209,9 +210,10 @@ Advice table_position_advice(const JudgedMotion& motion, const FindingWindow& wi
 Advice rest_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const Violation& v = window.worst;
   return {refused_text(motion, v) + " moves at the " + (window.first == 0 ? "beginning" : "end") +
-          " of the table: " + motion.model.dofs()[v.item].name + " has to " +
-          (window.first == 0 ? "start" : "stop") +
-          " gently and at rest, for example with a segment of minimum_jerk"};
+              " of the table",
+          motion.model.dofs()[v.item].name + " has to " + (window.first == 0 ? "start" : "stop") +
+              " gently and at rest, for example with a segment of minimum_jerk",
+          ""};
 }
 
 std::string target_step_infeasibility(const Finding& f, double violation) {

@@ -83,6 +83,7 @@ struct Finding {
   /// file.
   int cause = -1;
   std::string remedy = {};  ///< the hint without the advice to use `repair`
+  std::string action = {};  ///< the remedy without the fact that it begins with
   Place place = {};
   bool in_degrees = true;  ///< whether texts for people have angles in degrees and not in rad
 };

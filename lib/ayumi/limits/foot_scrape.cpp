@@ -212,7 +212,8 @@ Advice scrape_advice(const JudgedMotion&, const FindingWindow& window) {
   const double wanted = 0.01 * std::ceil(1e5 * (v.limit - v.value));  // in mm
   return {"the swinging " + foot + " sole scrapes the ground: a corner moves along it " +
               height_text(v.value) + ", and must be at least " + text::fixed(1000 * v.limit, 2) +
-              " mm above it: lift the foot " + text::fixed(wanted, 2) +
+              " mm above it",
+          "lift the foot " + text::fixed(wanted, 2) +
               " mm higher there, for example with a higher \"lift\" of this swing",
           kOrRepair};
 }

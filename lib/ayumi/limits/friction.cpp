@@ -94,11 +94,11 @@ bool friction_holds(JudgedMotion& motion, const Violation& v, double pace) {
 
 Advice friction_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const Violation& v = window.worst;
-  return "the motion needs a friction coefficient of " + text::fixed(v.value * motion.friction, 2) +
-         ", but " +
-         (v.value > 1 ? "the ground has " + text::fixed(motion.friction, 2)
-                      : "the tolerance allows " + text::fixed(v.limit * motion.friction, 2)) +
-         ": " + slow_down_text(std::sqrt(v.value / v.limit)) + " or take shorter steps";
+  return {"the motion needs a friction coefficient of " +
+              text::fixed(v.value * motion.friction, 2) + ", but " +
+              (v.value > 1 ? "the ground has " + text::fixed(motion.friction, 2)
+                           : "the tolerance allows " + text::fixed(v.limit * motion.friction, 2)),
+          slow_down_text(std::sqrt(v.value / v.limit)) + " or take shorter steps", ""};
 }
 
 std::string friction_infeasibility(const Finding& f, double violation) {

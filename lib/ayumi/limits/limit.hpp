@@ -55,13 +55,16 @@ struct ActuatorNeedWords {
   const char* after = "";  ///< text after the unit
 };
 
-/// Advice about a finding in two parts: what to do by hand, and the advice to use `repair` (may be
-/// empty).
+/// Advice about a finding: what is wrong (may be empty), what to do by hand, and the advice to use
+/// `repair` (may be empty).
 struct Advice {
-  Advice(std::string remedy, std::string or_repair = "")
-      : remedy(std::move(remedy)), or_repair(std::move(or_repair)) {}
-  Advice(const char* remedy) : remedy(remedy) {}
-  std::string remedy, or_repair;
+  Advice(std::string action, std::string or_repair = "")
+      : action(std::move(action)), or_repair(std::move(or_repair)) {}
+  Advice(const char* action) : action(action) {}
+  Advice(std::string fact, std::string action, std::string or_repair)
+      : fact(std::move(fact)), action(std::move(action)), or_repair(std::move(or_repair)) {}
+  std::string remedy() const { return fact.empty() ? action : fact + ": " + action; }
+  std::string fact, action, or_repair;
 };
 
 /// Properties of an error of one kind that matter for a repair.

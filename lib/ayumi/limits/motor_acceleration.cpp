@@ -68,10 +68,11 @@ const char* motor_acceleration_unit(const JudgedMotion& motion, const Violation&
 
 Advice motor_acceleration_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const Violation& v = window.worst;
-  return "the motor of " + motion.model.dofs()[v.item].name +
-         " cannot accelerate its own rotor so fast: " +
-         slow_down_text(std::sqrt(std::abs(v.value / v.limit))) +
-         " or make the motion of the joint smoother here";
+  return {"the motor of " + motion.model.dofs()[v.item].name +
+              " cannot accelerate its own rotor so fast",
+          slow_down_text(std::sqrt(std::abs(v.value / v.limit))) +
+              " or make the motion of the joint smoother here",
+          ""};
 }
 
 std::string motor_acceleration_infeasibility(const Finding& f, double violation) {

@@ -52,8 +52,8 @@ bool normal_force_holds(JudgedMotion& motion, const Violation& v, double pace) {
 const char* normal_force_unit(const JudgedMotion&, const Violation&) { return "N"; }
 
 Advice normal_force_advice(const JudgedMotion&, const FindingWindow&) {
-  return "the ground cannot pull: let the COG accelerate downwards by less than g, or plan a "
-         "flight phase";
+  return {"the ground cannot pull",
+          "let the COG accelerate downwards by less than g, or plan a flight phase", ""};
 }
 
 std::string normal_force_infeasibility(const Finding& f, double) {

@@ -55,10 +55,12 @@ const char* step_unit(const JudgedMotion& motion, const Violation& v) {
 Advice step_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const Violation& v = window.worst;
   const Dof& dof = motion.model.dofs()[v.item];
-  return dof.name + " jumps by " +
-         (dof.prismatic ? in_mm(v.value) : angle_size(v.value, motion.degrees)) +
-         " in one servo period: spread the step over " +
-         text::fixed(std::ceil(std::abs(v.value / v.limit)), 0) + " periods";
+  return {
+      dof.name + " jumps by " +
+          (dof.prismatic ? in_mm(v.value) : angle_size(v.value, motion.degrees)) +
+          " in one servo period",
+      "spread the step over " + text::fixed(std::ceil(std::abs(v.value / v.limit)), 0) + " periods",
+      ""};
 }
 
 std::string step_infeasibility(const Finding& f, double violation) {

@@ -222,8 +222,8 @@ void place_stance_rows(RowSite& site) {
 
 Advice slip_advice(const JudgedMotion&, const FindingWindow& window) {
   return {"the " + std::string(name_of(foot_of(window.worst))) + " sole moves " +
-              in_mm(window.worst.value) + " while it supports the robot: keep the foot still",
-          kOrRepair};
+              in_mm(window.worst.value) + " while it supports the robot",
+          "keep the foot still", kOrRepair};
 }
 
 Advice penetration_advice(const JudgedMotion&, const FindingWindow& window) {
@@ -239,14 +239,18 @@ Advice float_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const std::string time = text::fixed(std::abs(v.detail) * motion.series.dt, 3) + " s";
   const std::string height = text::fixed(1000 * v.value, 2) + " mm";
   if (v.detail > 0)
-    return "the " + foot + " sole is still " + height +
-           " above the ground when its contact begins: begin the contact " + time + " later";
+    return {
+        "the " + foot + " sole is still " + height + " above the ground when its contact begins",
+        "begin the contact " + time + " later", ""};
   if (v.detail < 0)
-    return "the " + foot + " sole is already " + height +
-           " above the ground when its contact ends: end the contact " + time + " earlier";
-  return "the " + foot + " sole is " + in_mm(v.value) +
-         " above the ground while it should support the robot: begin the contact later, end the "
-         "contact earlier, or lower the foot";
+    return {
+        "the " + foot + " sole is already " + height + " above the ground when its contact ends",
+        "end the contact " + time + " earlier", ""};
+  return {"the " + foot + " sole is " + in_mm(v.value) +
+              " above the ground while it should support the robot",
+          "begin the contact later, end the "
+          "contact earlier, or lower the foot",
+          ""};
 }
 
 std::string slip_infeasibility(const Finding& f, double) {

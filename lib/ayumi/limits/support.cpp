@@ -115,13 +115,12 @@ Advice support_advice(const JudgedMotion&, const FindingWindow& window) {
   const Violation& v = window.worst;
   const std::string whose = v.item == kMotionZmp ? "the ZMP of the motion" : "the commanded ZMP";
   if (v.value < 0)
-    return {whose + " is " + in_mm(v.value) +
-                " outside the support: reduce the displacement of the COG by this distance, or "
-                "give the step more time",
+    return {whose + " is " + in_mm(v.value) + " outside the support",
+            "reduce the displacement of the COG by this distance, or give the step more time",
             kOrRepair};
   return {whose + " is only " + in_mm(v.value) + " inside the support, but the wanted margin is " +
-              in_mm(v.limit) + ": reduce the displacement of the COG by the difference",
-          kOrRepair};
+              in_mm(v.limit),
+          "reduce the displacement of the COG by the difference", kOrRepair};
 }
 
 std::string support_infeasibility(const Finding& f, double violation) {

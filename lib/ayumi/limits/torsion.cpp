@@ -106,9 +106,10 @@ bool torsion_holds(JudgedMotion& motion, const Violation& v, double pace) {
 }
 
 Advice torsion_advice(const JudgedMotion&, const FindingWindow& window) {
-  return "the foot would turn on the ground: " +
-         slow_down_text(std::sqrt(window.worst.value / window.worst.limit)) +
-         " or swing the arms against the legs";
+  return {"the foot would turn on the ground",
+          slow_down_text(std::sqrt(window.worst.value / window.worst.limit)) +
+              " or swing the arms against the legs",
+          ""};
 }
 
 std::string torsion_infeasibility(const Finding& f, double violation) {

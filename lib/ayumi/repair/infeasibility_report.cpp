@@ -139,22 +139,15 @@ std::vector<std::string> remaining_errors(const ConsistencyReport& check) {
 
 namespace {
 
-// The advice of a finding without the fact before its colon, which the reason has already stated.
-// The advice on a torque begins with no fact.
-std::string without_fact(const InfeasibilityCause& cause) {
-  const Finding& finding = cause.finding;
-  const bool has_fact =
-      spec_of(finding.kind).infeasibility && finding.kind != FindingKind::joint_torque;
-  const size_t colon = has_fact ? finding.remedy.find(": ") : std::string::npos;
-  return colon == std::string::npos ? finding.remedy : finding.remedy.substr(colon + 2);
-}
-
 std::string remedy(const InfeasibilityCause& cause) {
   if (cause.time_factor > 1)
     return "stretch this window to " +
            text::fixed(std::ceil(10 * cause.time_factor - 1e-9) / 10, 1) + " times its length";
-  return without_fact(cause) +
-         (is_matter_of_time(cause.finding) ? " (a slower motion does not help)" : "");
+  // A reason in words of its own has already stated the fact.
+  const Finding& finding = cause.finding;
+  const bool states_fact = spec_of(finding.kind).infeasibility && !finding.action.empty();
+  return (states_fact ? finding.action : finding.remedy) +
+         (is_matter_of_time(finding) ? " (a slower motion does not help)" : "");
 }
 
 // The lock that covers the time of a finding, in words; empty if there is none.
