@@ -345,7 +345,7 @@ void limit_lines(Writer& w, const RunInstant& i) {
   const double t = i.log.dt * (static_cast<double>(i.k) + 0.5);
   bool any = false;
   for (const SimulationEvent& event : i.log.events)
-    if (event.kind == "saturation" && event.t < t) {
+    if (event.kind == EventKind::saturation && event.t < t) {
       any = true;
       w.line("from " + fixed(event.t, 3) + " s on: " + event.text);
     }

@@ -230,7 +230,7 @@ std::string outcome_text(const SimulationLog& log, size_t rows) {
   if (r.outcome == Outcome::fell) {
     text += " at " + text::fixed(r.fell_at, 2) + " s";
     for (const SimulationEvent& event : log.events)
-      if (event.kind == "fell") text += " (" + event.text + ")";
+      if (event.kind == EventKind::fell) text += " (" + event.text + ")";
   } else {
     text += ", final COG error " + text::fixed(1e3 * r.final_cog_error, 2) + " mm";
     if (r.outcome == Outcome::unsettled && r.zmp_amplitude > 0)

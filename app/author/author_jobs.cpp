@@ -158,9 +158,9 @@ AuthorResult simulate_job(const OrderedJson& asked, const Context& context,
                   : "The robot does not settle " + who + ".";
     // The pushes are the same in each run, but the falls are not.
     for (const SimulationEvent& event : log.events)
-      if (event.kind == "fell")
+      if (event.kind == EventKind::fell)
         marks.push_back({{"time", event.t}, {"text", who + ": fell, " + event.text}});
-      else if (event.kind == "push" && out.series.empty())
+      else if (event.kind == EventKind::push && out.series.empty())
         marks.push_back({{"time", event.t}, {"text", "push, " + event.text}});
     out.series[run.name] = live_series(log, kPageRate);
     out.strips[run.name] =

@@ -435,8 +435,8 @@ std::vector<SafetyViolation> torque_violations_of(const Source& source, const Sa
   std::vector<SafetyViolation> found;
   for (const Finding& f : check_consistency(source.model, source.plan->series, check).findings)
     if (f.kind == FindingKind::joint_torque && f.severity == Severity::error)
-      found.push_back({"torque", f.where, begin + f.at, std::abs(f.worst), std::abs(f.limit),
-                       f.unit,
+      found.push_back({TableLimit::torque, f.where, begin + f.at, std::abs(f.worst),
+                       std::abs(f.limit), f.unit,
                        static_cast<int>(std::lround((f.end - f.begin) / safe.table.dt)) + 1});
   return found;
 }

@@ -174,12 +174,12 @@ std::string in_degrees(double angle, int digits = 3) {
 std::string text_of(const Clamp& clamp) {
   return clamp.joint + " by up to " + in_degrees(clamp.change) + " at " + text::fixed(clamp.t, 3) +
          " s (because of the limit of the " +
-         (clamp.kind == "range" ? "counts of 16 bits" : clamp.kind) + ", in " +
+         (clamp.kind == Clamp::Kind::range ? "counts of 16 bits" : name_of(clamp.kind)) + ", in " +
          text::counted(clamp.rows, "servo period") + ")";
 }
 
 Json json_of(const Clamp& clamp) {
-  return {{"kind", clamp.kind},
+  return {{"kind", name_of(clamp.kind)},
           {"joint", clamp.joint},
           {"at_s", clamp.t},
           {"change_rad", clamp.change},

@@ -60,10 +60,10 @@ StreamedRun simulate_case(const Context& context, const Task& input, const Simul
   std::string values;
   for (size_t i = 0; i < drawn.size(); ++i)
     values += (i == 0 ? ": " : ", ") + task.value_text(i, drawn[i]);
-  return simulate_streamed(
-      context, input, simulate_options, log_file(output),
-      {.postures = output.has_value(),
-       .first_events = {{0, "case", "case " + std::to_string(options.number) + values}}});
+  return simulate_streamed(context, input, simulate_options, log_file(output),
+                           {.postures = output.has_value(),
+                            .first_events = {{0, EventKind::study_case,
+                                              "case " + std::to_string(options.number) + values}}});
 }
 
 RunFolder run_of(const Task& input, StreamedRun simulated) {

@@ -248,10 +248,13 @@ void bind_controller(py::module_& m) {
 void bind_log(py::module_& m) {
   py::class_<SimulationEvent>(m, "Event", "Something that happened in a run.")
       .def_readonly("t", &SimulationEvent::t, "Time [s].")
-      .def_readonly("kind", &SimulationEvent::kind, "'push', 'touchdown', 'fell', ...")
+      .def_property_readonly(
+          "kind", [](const SimulationEvent& e) { return name_of(e.kind); },
+          "'push', 'touchdown', 'fell', ...")
       .def_readonly("text", &SimulationEvent::text, "Description in words.")
       .def("__repr__", [](const SimulationEvent& e) {
-        return "<" + e.kind + " at " + std::to_string(e.t) + " s: " + e.text + ">";
+        return "<" + std::string(name_of(e.kind)) + " at " + std::to_string(e.t) + " s: " + e.text +
+               ">";
       });
 
   py::class_<Log, std::shared_ptr<Log>> log(

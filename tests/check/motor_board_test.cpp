@@ -43,7 +43,7 @@ TEST(MotorBoard, TheTargetMovesByAtMost57CountsPerMillisecond) {
   for (Eigen::Index k = 0; k < 5; ++k)
     EXPECT_NEAR(counts(board, k), 2090 + (k < 2 ? 0 : 57 * (static_cast<double>(k) - 1)), 1e-9);
   ASSERT_EQ(board.clamps.size(), 1u);
-  EXPECT_EQ(board.clamps[0].kind, "speed");
+  EXPECT_EQ(board.clamps[0].kind, Clamp::Kind::speed);
   EXPECT_EQ(board.clamps[0].joint, "a");
   EXPECT_NEAR(board.clamps[0].t, 0.002, 1e-12);
   EXPECT_NEAR(board.clamps[0].change, (209 - 57) / 209.0 * kDegree, 1e-9);
@@ -54,13 +54,13 @@ TEST(MotorBoard, TargetsStayWithinLimitsAnd16Bits) {
   const BoardTargets board = board_targets(test::bus_robot(), table_of_a({95, 95}, 0.001));
   EXPECT_NEAR(board.targets(0, 1), 90 * kDegree, 1e-9);
   ASSERT_EQ(board.clamps.size(), 1u);
-  EXPECT_EQ(board.clamps[0].kind, "position");
+  EXPECT_EQ(board.clamps[0].kind, Clamp::Kind::position);
   RobotDescription free = test::bus_description();
   free.joints[0].upper = 200 * kDegree;
   const BoardTargets far = board_targets(RobotModel(free), table_of_a({180, 180}, 0.001));
   EXPECT_NEAR(counts(far, 0), 32767, 1e-6);
   ASSERT_EQ(far.clamps.size(), 1u);
-  EXPECT_EQ(far.clamps[0].kind, "range");
+  EXPECT_EQ(far.clamps[0].kind, Clamp::Kind::range);
 }
 
 // The limits of a board are those of its type, in counts. So on a unit whose joint stands at -1
@@ -73,7 +73,7 @@ TEST(MotorBoard, LimitsAreInCountsOfTheEncoderAndNotInAnglesOfTheJoint) {
   const BoardTargets board = board_targets(unit, table_of_a({90, 90}, 0.001));
   EXPECT_NEAR(board.targets(0, 1), 89 * kDegree, 1e-9);
   ASSERT_EQ(board.clamps.size(), 1u);
-  EXPECT_EQ(board.clamps[0].kind, "position");
+  EXPECT_EQ(board.clamps[0].kind, Clamp::Kind::position);
   EXPECT_NEAR(board.clamps[0].change, 1 * kDegree, 1e-9);
   // At the other end, the counts allow what the joint does not.
   const BoardTargets low = board_targets(unit, table_of_a({-19, -19}, 0.001));

@@ -170,7 +170,7 @@ TEST(Hoap, TableOfHoap1) {
     }
   const SafeTable safe = make_safe(robot, motion);
   for (const SafetyViolation& violation : safe.report.violations)
-    EXPECT_NE(violation.kind, "position") << text_of(violation);
+    EXPECT_NE(violation.kind, TableLimit::position) << text_of(violation);
   const std::string text = hoap_csv(robot, safe.table);
   const std::string first = text.substr(0, text.find('\n'));
   EXPECT_EQ(std::count(first.begin(), first.end(), ',') + 1, 25);

@@ -97,7 +97,7 @@ TEST(LogRobot, AttitudesAreRotations) {
 TEST(LogRobot, ADrawnRobotMayHaveOtherMasses) {
   SimulationLog log = standing();
   for (SimulationSample& sample : log.samples) sample.cog.x() += 0.01;
-  log.events.insert(log.events.begin(), {0, "case", "case 3: mass of torso 1.1"});
+  log.events.insert(log.events.begin(), {0, EventKind::study_case, "case 3: mass of torso 1.1"});
   EXPECT_EQ(refused(log), "no error");
 }
 

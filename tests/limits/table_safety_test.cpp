@@ -95,7 +95,7 @@ TEST(ExportSafety, TargetsAloneGiveTheReportOfTheirTable) {
     }
   EXPECT_EQ(alone.max_step_ratio, ratio);
   EXPECT_DOUBLE_EQ(alone.min_limit_margin + robot.description().soft_limit_margin, margin);
-  const auto is_step = [](const SafetyViolation& v) { return v.kind == "step"; };
+  const auto is_step = [](const SafetyViolation& v) { return v.kind == TableLimit::step; };
   EXPECT_EQ(std::count_if(alone.rows.begin(), alone.rows.end(), is_step),
             static_cast<std::ptrdiff_t>(steps));
   EXPECT_GT(steps, 10u);
@@ -147,7 +147,7 @@ TEST(ExportSafety, FindsThePositionBeyondTheSoftLimit) {
   const RobotModel robot(description);
   const SafetyReport report = make_safe(robot, still(10, {10, 89.5, 0}), {}).report;
   ASSERT_EQ(report.violations.size(), 1u);
-  EXPECT_EQ(report.violations[0].kind, "position");
+  EXPECT_EQ(report.violations[0].kind, TableLimit::position);
   EXPECT_EQ(report.violations[0].joint, "b");
   EXPECT_NEAR(report.violations[0].limit, 89 * kDegree, 1e-12);
   EXPECT_NEAR(report.min_limit_margin, -0.5 * kDegree, 1e-12);
@@ -171,7 +171,7 @@ TEST(ExportSafety, TheLimitsHoldForTheJointAndForItsEncoder) {
       EXPECT_TRUE(make_safe(unit, still(10, {10, inside, 0}), {}).report.safe) << inside;
       const SafetyReport report = make_safe(unit, still(10, {10, beyond, 0}), {}).report;
       ASSERT_EQ(report.violations.size(), 1u) << beyond;
-      EXPECT_EQ(report.violations[0].kind, "position");
+      EXPECT_EQ(report.violations[0].kind, TableLimit::position);
       EXPECT_NEAR(report.violations[0].limit, inside * kDegree, 1e-12);
     }
   }
@@ -194,8 +194,8 @@ TEST(ExportSafety, FindsMovingEnds) {
   for (size_t k = 0; k < 10; ++k) table.rows[k].theta[2] = 0.0002 * static_cast<double>(k);
   const SafetyReport report = make_safe(robot, table, {}).report;
   ASSERT_EQ(report.violations.size(), 2u);
-  EXPECT_EQ(report.violations[0].kind, "start_speed");
-  EXPECT_EQ(report.violations[1].kind, "end_speed");
+  EXPECT_EQ(report.violations[0].kind, TableLimit::start_speed);
+  EXPECT_EQ(report.violations[1].kind, TableLimit::end_speed);
   EXPECT_NEAR(report.start_speed, 0.2, 1e-9);
   EXPECT_NEAR(report.end_speed, 0.2, 1e-9);
 }

@@ -61,13 +61,15 @@ TEST(UnitsInWords, AreThoseOfThePattern) {
 TEST(UnitsInWords, OfARefusedTableToo) {
   SafetyViolation violation;
   violation.joint = "l_elbow";
-  violation.kind = "speed";
+  violation.kind = TableLimit::end_speed;
   violation.unit = "rad/s";
   violation.value = 5;
   violation.limit = 4.76;
-  EXPECT_NE(text_of(violation).find("speed 286.479 deg/s, limit 272.728 deg/s"), std::string::npos)
+  EXPECT_NE(text_of(violation).find("speed at the end 286.479 deg/s, limit 272.728 deg/s"),
+            std::string::npos)
       << text_of(violation);
-  EXPECT_NE(text_of(violation, false).find("speed 5 rad/s, limit 4.76 rad/s"), std::string::npos)
+  EXPECT_NE(text_of(violation, false).find("speed at the end 5 rad/s, limit 4.76 rad/s"),
+            std::string::npos)
       << text_of(violation, false);
 }
 

@@ -30,7 +30,7 @@ struct Made {
         {.at = 0.2, .duration = 9, .what = Bump{.height = 0.01}}};
     closed.world.blocks = {{.low = {0.2, 0.2}, .high = {0.3, 0.4}, .height = 0.03}};
     closed.provenance.command_line = "ayumi run a<b>.json";
-    closed.events.push_back({0.3, "push", "0.4 N s on cog"});
+    closed.events.push_back({0.3, EventKind::push, "0.4 N s on cog"});
     input.title = "sway & <push>";
     input.runs = {{"open loop", &open}, {"closed loop", &closed}};
   }

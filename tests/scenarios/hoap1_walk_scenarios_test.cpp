@@ -199,7 +199,7 @@ GroundBlock plate(int swing, double height) {
 /// The first touchdown of this side in a window [s]; -1 if there is none.
 double touchdown(const SimulationLog& log, const char* side, double from, double to) {
   for (const SimulationEvent& event : log.events)
-    if (event.kind == "touchdown" && event.text.starts_with(side) && event.t >= from &&
+    if (event.kind == EventKind::touchdown && event.text.starts_with(side) && event.t >= from &&
         event.t <= to)
       return event.t;
   return -1;

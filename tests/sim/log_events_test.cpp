@@ -5,28 +5,36 @@
 namespace ayumi {
 namespace {
 
-std::vector<SimulationEvent> events_of(const std::vector<std::string>& kinds) {
+std::vector<SimulationEvent> events_of(const std::vector<EventKind>& kinds) {
   std::vector<SimulationEvent> events;
-  for (const std::string& kind : kinds)
+  for (const EventKind kind : kinds)
     events.push_back({static_cast<double>(events.size()), kind, ""});
   return events;
 }
 
-std::vector<std::string> kinds_of(const std::vector<SimulationEvent>& events) {
-  std::vector<std::string> kinds;
+std::vector<EventKind> kinds_of(const std::vector<SimulationEvent>& events) {
+  std::vector<EventKind> kinds;
   for (const SimulationEvent& event : events) kinds.push_back(event.kind);
   return kinds;
 }
 
-using Kinds = std::vector<std::string>;
+using Kinds = std::vector<EventKind>;
+using enum EventKind;
+
+TEST(LogEvents, EachKindHasItsName) {
+  EXPECT_STREQ(name_of(study_case), "case");
+  EXPECT_STREQ(name_of(touchdown), "touchdown");
+  EXPECT_STREQ(name_of(EventKind::log), "log");
+  EXPECT_EQ(event_kind_names().size(), static_cast<size_t>(EventKind::log) + 1);
+}
 
 TEST(LogEvents, TheLastTouchdownsAreLeftOutFirst) {
   std::vector<SimulationEvent> events =
-      events_of({"push", "touchdown", "touchdown", "touchdown", "saturation", "fell"});
+      events_of({push, touchdown, touchdown, touchdown, saturation, fell});
   limit_events(events, 6);
   EXPECT_EQ(events.size(), 6u);
   limit_events(events, 5);
-  EXPECT_EQ(kinds_of(events), (Kinds{"push", "touchdown", "saturation", "fell", "log"}));
+  EXPECT_EQ(kinds_of(events), (Kinds{push, touchdown, saturation, fell, EventKind::log}));
   EXPECT_EQ(events[1].t, 1);
   EXPECT_EQ(events.back().text, "2 events left out");
   EXPECT_EQ(events.back().t, 5);
@@ -34,9 +42,9 @@ TEST(LogEvents, TheLastTouchdownsAreLeftOutFirst) {
 
 TEST(LogEvents, OthersFollowIfThereAreStillTooMany) {
   std::vector<SimulationEvent> events =
-      events_of({"push", "touchdown", "disturbance", "touchdown", "disturbance"});
+      events_of({push, touchdown, disturbance, touchdown, disturbance});
   limit_events(events, 3);
-  EXPECT_EQ(kinds_of(events), (Kinds{"push", "disturbance", "log"}));
+  EXPECT_EQ(kinds_of(events), (Kinds{push, disturbance, EventKind::log}));
   EXPECT_EQ(events.back().text, "3 events left out");
 }
 

@@ -242,7 +242,7 @@ TEST(StandingCalibration, FindsTheOffsetsOfTheAnkles) {
     EXPECT_LT(log.result.zmp_tracking_rms, 0.003);
     size_t found = 0;
     for (const SimulationEvent& event : log.events) {
-      if (event.kind != "calibration") continue;
+      if (event.kind != EventKind::calibration) continue;
       ++found;
       bool named = false;
       for (const auto& [joint, degrees] : truth) {
@@ -284,7 +284,7 @@ TEST(StandingCalibration, BothAnklesAlikeMayBeASlope) {
   const SimulationLog log = simulate(stand.model, stand.series, stand.options);
   int words = 0;
   for (const SimulationEvent& event : log.events) {
-    if (event.kind != "calibration") continue;
+    if (event.kind != EventKind::calibration) continue;
     ++words;
     EXPECT_NE(event.text.find("or the ground slopes"), std::string::npos) << event.text;
   }
@@ -296,7 +296,7 @@ TEST(StandingCalibration, BothAnklesAlikeMayBeASlope) {
 TEST(StandingCalibration, LeavesARobotAloneThatStandsOnItsSoles) {
   const Stand stand;
   for (const SimulationEvent& event : simulate(stand.model, stand.series, stand.options).events)
-    EXPECT_NE(event.kind, "calibration") << event.text;
+    EXPECT_NE(event.kind, EventKind::calibration) << event.text;
 }
 
 // A joint of this robot unit stands beyond what its encoder reads by the offset. The controller of

@@ -20,7 +20,7 @@ constexpr double kWhole = 1e-6;  // tolerance in counts. Chosen: above rounding 
 class Watch {
  public:
   Watch(std::string joint, double unit) : joint_(std::move(joint)), unit_(unit) {}
-  void note(const char* kind, double change, double t) {
+  void note(Clamp::Kind kind, double change, double t) {
     if (std::abs(change) <= kWhole) return;
     for (Clamp& known : found_) {
       if (known.kind != kind) continue;
@@ -41,6 +41,18 @@ class Watch {
 };
 
 }  // namespace
+
+const char* name_of(Clamp::Kind kind) {
+  switch (kind) {
+    case Clamp::Kind::range:
+      return "range";
+    case Clamp::Kind::position:
+      return "position";
+    case Clamp::Kind::speed:
+      return "speed";
+  }
+  return "";
+}
 
 BoardTargets board_targets(const RobotModel& model, const ReferenceTrajectory& table,
                            const SafetyOptions& options) {
@@ -84,9 +96,9 @@ BoardTargets board_targets(const RobotModel& model, const ReferenceTrajectory& t
       const double fits = counts != 0 ? std::clamp(asked, kFewestCounts, kMostCounts) : asked;
       const double inside = std::clamp(fits, lower, upper);
       board = k == 0 ? inside : std::clamp(inside, board - step, board + step);
-      watch.note("range", asked - fits, t);
-      watch.note("position", fits - inside, t);
-      watch.note("speed", inside - board, t);
+      watch.note(Clamp::Kind::range, asked - fits, t);
+      watch.note(Clamp::Kind::position, fits - inside, t);
+      watch.note(Clamp::Kind::speed, inside - board, t);
       result.targets(j, k) = board / scale + zeros[j];
     }
     result.clamps.insert(result.clamps.end(), watch.found().begin(), watch.found().end());

@@ -12,12 +12,17 @@ namespace ayumi {
 
 /// A difference between the table and the targets that a joint receives, at its worst sample.
 struct Clamp {
-  std::string kind;  ///< "range" (16 bits), "position" or "speed"
+  /// What the board limits: the counts to 16 bits, the position, or the change from tick to tick.
+  enum class Kind { range, position, speed };
+  Kind kind = Kind::range;
   std::string joint;
   double t = 0;       ///< time of the worst sample, from the first row on [s]
   double change = 0;  ///< largest change of the table's value [rad]
   int rows = 0;       ///< number of ticks that differ
 };
+
+/// The name of the kind in JSON: "range", "position" or "speed".
+const char* name_of(Clamp::Kind kind);
 
 /// Targets as the servos receive them.
 struct BoardTargets {

@@ -32,8 +32,9 @@ const SafetyOptions kExport;
 constexpr int kInCounts = 1, kInJointUnit = 0;
 
 FindingKind kind_of(const SafetyViolation& violation) {
-  if (violation.kind == "step") return FindingKind::table_step;
-  if (violation.kind == "position" || violation.kind == "range") return FindingKind::table_position;
+  if (violation.kind == TableLimit::step) return FindingKind::table_step;
+  if (violation.kind == TableLimit::position || violation.kind == TableLimit::range)
+    return FindingKind::table_position;
   return FindingKind::table_rest;
 }
 

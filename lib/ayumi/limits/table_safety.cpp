@@ -179,7 +179,8 @@ class JointJudge {
     const double margin = std::min(theta - soft_.lower, soft_.upper - theta);
     margin_ = std::min(margin_, margin);
     const double limit = theta < soft_.lower ? soft_.lower : soft_.upper;
-    if (margin < -beyond_) violations_.add({"position", dof_.name, t, theta, limit, "rad", 0});
+    if (margin < -beyond_)
+      violations_.add({TableLimit::position, dof_.name, t, theta, limit, "rad", 0});
   }
 
   // `change` in counts if the joint has an encoder, otherwise in rad.
@@ -190,14 +191,14 @@ class JointJudge {
       ratio_at_ = t;
     }
     if (ratio > share_ + kStepSlack)
-      violations_.add({"step", dof_.name, t, std::abs(change), share_ * step_,
+      violations_.add({TableLimit::step, dof_.name, t, std::abs(change), share_ * step_,
                        scale_ > 0 ? "counts" : "rad", 0});
   }
 
   void range(int count, double t) {
     if (std::abs(count) > kLargestCount)
-      violations_.add(
-          {"range", dof_.name, t, static_cast<double>(count), kLargestCount, "counts", 0});
+      violations_.add({TableLimit::range, dof_.name, t, static_cast<double>(count), kLargestCount,
+                       "counts", 0});
   }
 
   const Dof& dof_;
@@ -246,10 +247,10 @@ void judge_ends(const TargetRows& motion, const SafetyOptions& options, SafetyRe
     report.start_speed = std::max(report.start_speed, start);
     report.end_speed = std::max(report.end_speed, end);
     if (start > options.rest_speed)
-      violations.add(
-          {"start_speed", motion.joints[j], report.ramp, start, options.rest_speed, "rad/s", 0});
+      violations.add({TableLimit::start_speed, motion.joints[j], report.ramp, start,
+                      options.rest_speed, "rad/s", 0});
     if (end > options.rest_speed)
-      violations.add({"end_speed", motion.joints[j],
+      violations.add({TableLimit::end_speed, motion.joints[j],
                       report.ramp + static_cast<double>(last) * motion.dt, end, options.rest_speed,
                       "rad/s", 0});
   }
@@ -361,7 +362,42 @@ SafetyReport report_on(const RobotModel& model, const TargetRows& targets, const
   return report;
 }
 
+// The quantity that a limit concerns, for people.
+std::string quantity_of(TableLimit limit) {
+  switch (limit) {
+    case TableLimit::range:
+      return "encoder position";
+    case TableLimit::start_speed:
+      return "speed at the start";
+    case TableLimit::end_speed:
+      return "speed at the end";
+    case TableLimit::position:
+    case TableLimit::step:
+    case TableLimit::torque:
+      break;
+  }
+  return name_of(limit);
+}
+
 }  // namespace
+
+const char* name_of(TableLimit limit) {
+  switch (limit) {
+    case TableLimit::position:
+      return "position";
+    case TableLimit::step:
+      return "step";
+    case TableLimit::range:
+      return "range";
+    case TableLimit::torque:
+      return "torque";
+    case TableLimit::start_speed:
+      return "start_speed";
+    case TableLimit::end_speed:
+      return "end_speed";
+  }
+  return "";
+}
 
 SafetyOptions as_it_is(SafetyOptions options) {
   options.ramp = options.hold = 0;
@@ -383,11 +419,7 @@ std::string text_of(const SafetyViolation& v, bool degrees) {
   const auto quantity = [&](double value) {
     return text::brief(value * unit.scale, 6) + " " + unit.name;
   };
-  const std::string what = v.kind == "start_speed" ? "speed at the start"
-                           : v.kind == "end_speed" ? "speed at the end"
-                           : v.kind == "range"     ? "encoder position"
-                                                   : v.kind;
-  return v.joint + " at " + on_both_clocks(v.t, v.begin, v.end) + ": " + what + " " +
+  return v.joint + " at " + on_both_clocks(v.t, v.begin, v.end) + ": " + quantity_of(v.kind) + " " +
          quantity(v.value) + ", limit " + quantity(v.limit) + " (in " +
          text::counted(v.rows, "row") + ")";
 }
@@ -401,7 +433,7 @@ std::vector<SafetyViolation> torque_violations(const RobotModel& model,
     for (Eigen::Index k = 0; k < torque.rows(); ++k) {
       const double value = std::abs(torque(k, dof));
       if (value > peak[dof] * (1 + 1e-6))
-        violations.add({"torque", model.dofs()[static_cast<size_t>(dof)].name,
+        violations.add({TableLimit::torque, model.dofs()[static_cast<size_t>(dof)].name,
                         begin + static_cast<double>(k) * dt, value, peak[dof], "N m", 0});
     }
   return violations.list();

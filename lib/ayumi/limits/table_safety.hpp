@@ -37,9 +37,21 @@ struct SafetyOptions {
 /// no ramp and no hold, and its speed at both ends is a mean, because its rows are whole counts.
 SafetyOptions as_it_is(SafetyOptions options);
 
+/// What a table must keep so that it may be sent to a robot.
+enum class TableLimit {
+  position,     ///< the position limits of the joint
+  step,         ///< the largest step from row to row
+  range,        ///< the range of the encoder's counts
+  torque,       ///< the peak torque of the motor
+  start_speed,  ///< the speed of the first rows
+  end_speed,    ///< the speed of the last rows
+};
+/// The name of the limit in files: "position", "step", ...
+const char* name_of(TableLimit limit);
+
 /// One way in which a table is unsafe, with its worst row.
 struct SafetyViolation {
-  std::string kind;  ///< "position", "step", "range", "torque", "start_speed", "end_speed"
+  TableLimit kind = TableLimit::position;  ///< the limit that is violated
   std::string joint;
   double t = 0;                 ///< time of the worst row [s]
   double value = 0, limit = 0;  ///< value and limit, in `unit`

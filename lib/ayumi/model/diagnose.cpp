@@ -72,30 +72,52 @@ class Doctor {
   }
 
  private:
+  using Subject = ModelWarning::Subject;
+
   /// Something suspicious about a link, a joint or a pair of them. `message` is the cause, which is
   /// the same for all that have it; `detail` has the figures, and `size` shows which of them is the
   /// worst.
   struct Suspicion {
-    std::string kind, message;
-    std::vector<std::string> names;
+    Subject subject = Subject::link;
+    std::string message;
+    std::vector<std::vector<std::string>> names;
     std::string detail, worst;
     double size = 0;
   };
 
-  void warn(const std::string& kind, const std::string& name, const std::string& message,
+  // `names` are those of one link or joint, or of several that are suspicious together.
+  void warn(Subject subject, const std::vector<std::string>& names, const std::string& message,
             const std::string& detail = "", double size = 0) {
     const auto same = std::find_if(suspicions_.begin(), suspicions_.end(), [&](const auto& each) {
-      return each.kind == kind && each.message == message;
+      return each.subject == subject && each.message == message;
     });
     Suspicion& suspicion = same != suspicions_.end() ? *same : suspicions_.emplace_back();
-    suspicion.kind = kind;
+    suspicion.subject = subject;
     suspicion.message = message;
     if (suspicion.names.empty() || size > suspicion.size) {
       suspicion.detail = detail;
-      suspicion.worst = name;
+      suspicion.worst = text::join(names, ", ");
       suspicion.size = size;
     }
-    suspicion.names.push_back(name);
+    suspicion.names.push_back(names);
+  }
+  void warn(Subject subject, const std::string& name, const std::string& message,
+            const std::string& detail = "", double size = 0) {
+    warn(subject, std::vector<std::string>{name}, message, detail, size);
+  }
+
+  static std::string words_of(Subject subject, bool plural) {
+    switch (subject) {
+      case Subject::link:
+        return plural ? "links" : "link";
+      case Subject::joint:
+        return plural ? "joints" : "joint";
+      case Subject::limits:
+        return "limits";
+      case Subject::posture:
+        return "posture";
+    }
+    return "";
   }
 
   /// One warning for each cause, whatever the number of links or joints that have it.
@@ -103,21 +125,21 @@ class Doctor {
     std::vector<ModelWarning> warnings;
     for (const Suspicion& each : suspicions_) {
       const size_t count = each.names.size();
-      const bool pairs = each.names[0].find(", ") != std::string::npos;
-      const bool plural = (count > 1 || pairs) && !each.kind.ends_with('s');
-      const std::string kinds = each.kind + (plural ? "s" : "");
-      std::vector<std::string> shown = each.names;
-      if (count > kMostNames) shown.resize(kFewNames);
+      const bool several = each.names[0].size() > 1;
+      const std::string subjects = words_of(each.subject, count > 1 || several);
+      std::vector<std::string> shown;
+      for (size_t i = 0; i < (count > kMostNames ? kFewNames : count); ++i)
+        shown.push_back(text::join(each.names[i], ", "));
       const std::string where =
-          (count > kMostNames ? std::to_string(count) + (pairs ? " pairs of " : " ") : "") + kinds +
-          (count > kMostNames ? " (" : " ") + text::join(shown, pairs ? "; " : ", ") +
+          (count > kMostNames ? std::to_string(count) + (several ? " pairs of " : " ") : "") +
+          subjects + (count > kMostNames ? " (" : " ") + text::join(shown, several ? "; " : ", ") +
           (count > kMostNames ? ", ...)" : "");
       const std::string detail = each.detail.empty() ? ""
                                  : count == 1
                                      ? " (" + each.detail + ")"
                                      : " (the worst is " + each.worst + ": " + each.detail + ")";
       const bool named = count > 1 || !each.names[0].empty();
-      warnings.push_back({each.kind, named ? where : each.kind, each.message + detail});
+      warnings.push_back({each.subject, named ? where : subjects, each.message + detail});
     }
     return warnings;
   }
@@ -126,11 +148,11 @@ class Doctor {
     if (link.inertia.mass == 0) {
       const Body& body = model_.bodies()[link.body];
       if (body.inertia.mass == 0 && body.name == link.name)
-        warn("link", link.name,
+        warn(Subject::link, link.name,
              "no mass is stated, although a joint moves the link; Ayumi takes such a link for a "
              "frame between two axes");
       else if (!link.visuals.empty() || !link.collisions.empty())
-        warn("link", link.name,
+        warn(Subject::link, link.name,
              "a shape is stated but no mass; the link that carries this one must contain its mass");
       return;
     }
@@ -141,10 +163,10 @@ class Doctor {
   void examine_tensor(const Link& link) {
     const Eigen::Vector3d principal = symmetric_eigenvalues(link.inertia.about_com);
     if (principal.maxCoeff() <= 0)
-      warn("link", link.name,
+      warn(Subject::link, link.name,
            "the inertia tensor is zero; give the tensor that follows from shape and mass");
     else if (principal[2] > 1.01 * (principal[0] + principal[1]))
-      warn("link", link.name,
+      warn(Subject::link, link.name,
            "the largest principal moment exceeds the sum of the other two, which no body can have; "
            "check the tensor and the frame",
            text::brief(principal[2]) + " and " + text::brief(principal[0] + principal[1]) +
@@ -164,32 +186,33 @@ class Doctor {
     const double gyration = std::sqrt(link.inertia.about_com.trace() / 2 / link.inertia.mass);
     if (box.isEmpty()) {
       if (gyration > size_)
-        warn("link", link.name,
+        warn(Subject::link, link.name,
              "the inertia is that of a body larger than the robot; is this a placeholder?",
              millimetres(gyration) + " radius of gyration", gyration);
       return;
     }
     if (gyration > reach)
-      warn("link", link.name,
+      warn(Subject::link, link.name,
            "the inertia is that of a body larger than the shape; is this a placeholder?",
            millimetres(gyration) + " radius of gyration, but the shape reaches only " +
                millimetres(reach) + " from the centre of mass",
            gyration / std::max(reach, 1e-9));
     if (box.diagonal().norm() > 5 * size_)
-      warn("link", link.name,
+      warn(Subject::link, link.name,
            "the shape is far larger than the robot; if the mesh is in millimetres, set the scale "
            "of the mesh",
            millimetres(box.diagonal().norm()), box.diagonal().norm());
     const double outside = box.exteriorDistance(link.inertia.com);
     if (outside > kOutside * box.diagonal().norm())
-      warn("link", link.name,
+      warn(Subject::link, link.name,
            "the centre of mass lies outside the shape; check the frame of the inertia",
            "by " + millimetres(outside) + ", and the shape measures " +
                millimetres(box.diagonal().norm()),
            outside / box.diagonal().norm());
     const double density = link.inertia.mass / std::max(box.volume(), 1e-12);
     if (density > kDensest)
-      warn("link", link.name, "the density is above that of lead; check the mass or the shape",
+      warn(Subject::link, link.name,
+           "the density is above that of lead; check the mass or the shape",
            text::brief(link.inertia.mass) + " kg in a box of " +
                millimetres(box.diagonal().norm()) + " diagonal",
            density);
@@ -210,7 +233,7 @@ class Doctor {
         other_mass |= heavy[j]->inertia.mass != heavy[i]->inertia.mass;
       }
       if (same.size() > 2 && other_mass)
-        warn("link", text::join(same, ", "),
+        warn(Subject::link, same,
              "these links have the same inertia tensor but different masses; are the tensors "
              "placeholders?");
     }
@@ -219,11 +242,11 @@ class Doctor {
   void examine_collisions() {
     const std::vector<std::string> missing = bodies_without_collision_shapes(model_);
     if (missing.size() == 1)
-      warn("link", missing[0],
+      warn(Subject::link, missing[0],
            "no collision shape is stated, so contacts and self-collisions of this link are not "
            "detected");
     else if (!missing.empty())
-      warn("link", text::join(missing, ", "),
+      warn(Subject::link, missing,
            "no collision shapes are stated, so contacts and self-collisions of these links are not "
            "detected");
   }
@@ -231,7 +254,9 @@ class Doctor {
   void examine_dof(const Dof& dof) {
     const int index = model_.find_dof(dof.name);
     const ActuatorLimits& limits = model_.limits();
-    const auto suspect = [&](const std::string& message) { warn("joint", dof.name, message); };
+    const auto suspect = [&](const std::string& message) {
+      warn(Subject::joint, dof.name, message);
+    };
     if (!dof.limited)
       suspect("no position limits are stated; add them");
     else if (dof.upper - dof.lower < 1e-6)
@@ -257,12 +282,12 @@ class Doctor {
     if (torque.size() < 3 || !torque.allFinite()) return;
     const double largest = 10 * model_.mass() * kGravity * size_;
     if (torque.maxCoeff() > largest)
-      warn("limits", "",
+      warn(Subject::limits, std::vector<std::string>(),
            "a torque limit of " + text::brief(torque.maxCoeff()) +
                " N m could throw the robot; is this a placeholder?");
     const double decade = elementary::log10(torque[0]);
     if (torque.minCoeff() == torque.maxCoeff() && std::abs(decade - std::round(decade)) < 1e-9)
-      warn("limits", "",
+      warn(Subject::limits, std::vector<std::string>(),
            "every joint has the torque limit " + text::brief(torque[0]) +
                " N m; is this a placeholder?");
   }
@@ -325,7 +350,7 @@ class Doctor {
     const size_t conform = opposite.size(), against = same.size();
     if (conform == 0 || against == 0) return;
     const bool are_same_here = conform >= against;
-    warn("joints", text::join(are_same_here ? same : opposite, ", "),
+    warn(Subject::joint, are_same_here ? same : opposite,
          std::string("one of the two encoder signs may be wrong: in a symmetric movement, the left "
                      "and the right count change in ") +
              (are_same_here ? "the same direction here, but in opposite directions"
@@ -335,16 +360,16 @@ class Doctor {
   }
 
   void compare_links(const Link& left, const Link& right) {
-    const std::string names = left.name + ", " + right.name;
+    const std::vector<std::string> names = {left.name, right.name};
     const double a = left.inertia.mass, b = right.inertia.mass;
     if (std::abs(a - b) > kAsymmetry * std::max(a, b))
-      warn("link", names, "left and right masses differ",
+      warn(Subject::link, names, "left and right masses differ",
            text::brief(a) + " and " + text::brief(b) + " kg", std::abs(a - b));
     Eigen::Vector3d mirrored = zero_[left.body] * left.pose * left.inertia.com;
     mirrored.y() = -mirrored.y();
     const double apart = (mirrored - zero_[right.body] * right.pose * right.inertia.com).norm();
     if (a > 0 && b > 0 && apart > kAsymmetry * size_)
-      warn("link", names, "their centres of mass are not mirror images of each other",
+      warn(Subject::link, names, "their centres of mass are not mirror images of each other",
            millimetres(apart) + " apart with every joint at 0", apart);
   }
 
@@ -357,24 +382,24 @@ class Doctor {
 
   void compare_dofs(const Dof& left, const Dof& right, const Eigen::Vector3d& before,
                     std::vector<std::string>& same, std::vector<std::string>& opposite) {
-    const std::string names = left.name + ", " + right.name;
+    const std::vector<std::string> names = {left.name, right.name};
     Eigen::Vector3d axis = zero_[left.body].linear() * model_.bodies()[left.body].axis;
     axis = left.prismatic ? Eigen::Vector3d(axis.x(), -axis.y(), axis.z())
                           : Eigen::Vector3d(-axis.x(), axis.y(), -axis.z());
     const double apart = (displacement(left, right) - before).norm();
     if (apart > kAsymmetry * size_)
-      warn("joint", names, "their places are not mirror images of each other",
+      warn(Subject::joint, names, "their places are not mirror images of each other",
            millimetres(apart) + " apart", apart);
     const double along = axis.dot(zero_[right.body].linear() * model_.bodies()[right.body].axis);
     if (std::abs(along) < 0.99) {
-      warn("joint", names, "their axes are not mirror images of each other");
+      warn(Subject::joint, names, "their axes are not mirror images of each other");
       return;
     }
     const double lower = along > 0 ? left.lower : -left.upper;
     const double upper = along > 0 ? left.upper : -left.lower;
     const auto differ = [](double a, double b) { return a != b && !(std::abs(a - b) <= kDegree); };
     if (differ(lower, right.lower) || differ(upper, right.upper))
-      warn("joint", names, "left and right limits differ",
+      warn(Subject::joint, names, "left and right limits differ",
            "the mirror image of the left range is " + text::brief(lower) + " to " +
                text::brief(upper) + ", the right range is " + text::brief(right.lower) + " to " +
                text::brief(right.upper),
@@ -392,13 +417,13 @@ class Doctor {
     const double tilt = elementary::acos(std::clamp(up.dot(soles[1].linear().col(2)), -1.0, 1.0));
     const double step = up.dot(soles[1].translation() - soles[0].translation());
     if (tilt > kDegree || std::abs(step) > 0.001)
-      warn("posture", "home",
+      warn(Subject::posture, "home",
            "the soles are not on one plane: the angle between them is " +
                text::fixed(tilt / kDegree, 1) + " deg, and their heights differ by " +
                millimetres(std::abs(step)) + "; correct the ankle angles");
     const double lean = elementary::acos(std::clamp(up.z(), -1.0, 1.0));
     if (lean > 5 * kDegree)
-      warn("posture", "home",
+      warn(Subject::posture, "home",
            "the root link leans by " + text::fixed(lean / kDegree, 1) +
                " deg against the soles; is this intended?");
     Eigen::Vector3d cog = Eigen::Vector3d::Zero();
@@ -419,7 +444,7 @@ class Doctor {
                 .head<2>());
     const double margin = ConvexPolygon(corners).margin((to_left * cog).head<2>());
     if (margin < 0)
-      warn("posture", "home",
+      warn(Subject::posture, "home",
            "the COG lies " + millimetres(-margin) +
                " outside the soles, so the robot falls; shift the COG over the feet");
   }

@@ -9,7 +9,9 @@
 namespace ayumi {
 
 struct ModelWarning {
-  std::string kind;     ///< "link", "joint", ...: what the warning concerns
+  /// What a warning concerns: links, joints, the actuator limits or the home posture.
+  enum class Subject { link, joint, limits, posture };
+  Subject subject = Subject::link;
   std::string where;    ///< links, joints or field, e.g. "link head", "links head, neck"
   std::string message;  ///< the suspicion and the remedy
 };

@@ -385,7 +385,7 @@ std::string comparison_section(const ReportInput& input) {
 std::string events_section(const ReportInput& input) {
   Table rows = {"Events of the " + name_of(input.runs.back()), {"time [s]", "kind", "what"}, {}};
   for (const SimulationEvent& event : input.runs.back().log->events)
-    rows.rows.push_back({time_link(event.t), escaped(event.kind), escaped(event.text)});
+    rows.rows.push_back({time_link(event.t), name_of(event.kind), escaped(event.text)});
   if (rows.rows.empty()) return "";
   return section("events", "Events", table(rows));
 }

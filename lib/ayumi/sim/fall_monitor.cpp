@@ -194,7 +194,7 @@ bool FallMonitor::observe_verdict(double t, const CommandSample& command,
                        " touched the ground";
   if (reason.empty()) return false;
   r.fell_at = t;
-  events_.push_back({t, "fell", reason});
+  events_.push_back({t, EventKind::fell, reason});
   return true;
 }
 
@@ -214,7 +214,7 @@ void FallMonitor::observe_feet(double t, const CommandSample& command, const Rob
     const bool lifted = unloaded_[i] > kMinFootFlight;
     if (loaded && lifted) {
       ++result_.steps;
-      events_.push_back({t, "touchdown", std::string(name_of(side)) + " foot"});
+      events_.push_back({t, EventKind::touchdown, std::string(name_of(side)) + " foot"});
     }
     if (fz <= 0)
       unloaded_[i] += dt;

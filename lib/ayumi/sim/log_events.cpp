@@ -6,6 +6,17 @@
 
 namespace ayumi {
 
+const std::vector<std::string>& event_kind_names() {
+  static const std::vector<std::string> names = {
+      "case",       "controller", "calibration", "push", "disturbance",
+      "saturation", "contact",    "touchdown",   "fell", "log"};
+  return names;
+}
+
+const char* name_of(EventKind kind) {
+  return event_kind_names()[static_cast<size_t>(kind)].c_str();
+}
+
 void limit_events(std::vector<SimulationEvent>& events, size_t most) {
   if (events.size() <= most || most == 0) return;
   const double last = events.back().t;
@@ -13,7 +24,7 @@ void limit_events(std::vector<SimulationEvent>& events, size_t most) {
   size_t surplus = before - (most - 1);  // one place is for the note
   std::reverse(events.begin(), events.end());
   const auto is_surplus = [&](const SimulationEvent& event) {
-    if (surplus == 0 || event.kind != "touchdown") return false;
+    if (surplus == 0 || event.kind != EventKind::touchdown) return false;
     --surplus;
     return true;
   };
@@ -24,7 +35,7 @@ void limit_events(std::vector<SimulationEvent>& events, size_t most) {
   kept.resize(std::min(kept.size(), most - 1));
   const size_t left_out = before - kept.size();
   events = std::move(kept);
-  events.push_back({last, "log", text::counted(left_out, "event") + " left out"});
+  events.push_back({last, EventKind::log, text::counted(left_out, "event") + " left out"});
 }
 
 }  // namespace ayumi

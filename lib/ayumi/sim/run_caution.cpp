@@ -15,7 +15,7 @@ std::string unfit_words(const SimulationLog& log) {
   }
   std::string words = "the run fell at " + text::fixed(log.result.fell_at, 2) + " s";
   for (const SimulationEvent& event : log.events)
-    if (event.kind == "fell") words += " (" + event.text + ")";
+    if (event.kind == EventKind::fell) words += " (" + event.text + ")";
   return words;
 }
 

@@ -279,11 +279,11 @@ std::vector<SimulationEvent> Schedule::events() const {
     const bool push = is_push(entry.source);
     const bool floor = std::holds_alternative<FloorPath>(entry.source.what);
     const std::string text = words(entry.source);
-    events.push_back(
-        {static_cast<double>(entry.first) * step_, push ? "push" : "disturbance", text});
+    events.push_back({static_cast<double>(entry.first) * step_,
+                      push ? EventKind::push : EventKind::disturbance, text});
     if (!push)
-      events.push_back({static_cast<double>(entry.first + entry.count) * step_, "disturbance",
-                        text + (floor ? ": done" : ": over")});
+      events.push_back({static_cast<double>(entry.first + entry.count) * step_,
+                        EventKind::disturbance, text + (floor ? ": done" : ": over")});
   }
   return events;
 }

@@ -61,9 +61,27 @@ struct SimulationSample {
   EnergyBalance work;  ///< work since t = 0
 };
 
+/// What happened in a run.
+enum class EventKind {
+  study_case,   ///< the run is a case of a study, which changed the robot or the world
+  controller,   ///< what controls the robot
+  calibration,  ///< what the sensors were found to read without a load
+  push,         ///< a push begins
+  disturbance,  ///< another disturbance begins or ends
+  saturation,   ///< a limit holds back the controller or a motor
+  contact,      ///< two bodies of the robot touch
+  touchdown,    ///< a foot lands
+  fell,         ///< the robot fell
+  log,          ///< a note on the log itself
+};
+/// The name of the kind in files: "case", "controller", "push", ...
+const char* name_of(EventKind kind);
+/// All these names, in the order of the kinds.
+const std::vector<std::string>& event_kind_names();
+
 struct SimulationEvent {
-  double t = 0;      ///< time [s]
-  std::string kind;  ///< kind: "push", "touchdown", "fell", "saturation", "support", ...
+  double t = 0;  ///< time [s]
+  EventKind kind = EventKind::log;
   std::string text;  ///< the event in words
 };
 

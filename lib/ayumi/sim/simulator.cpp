@@ -90,7 +90,8 @@ Simulator::Simulator(const RobotModel& model, const CommandSeries& series,
   model.sole(Side::left);  // throws if the robot has no soles
   set_scenario(options.scenario);
   if (options.targets)
-    events_.push_back({0, "controller", "the servo targets are those of the caller's function"});
+    events_.push_back(
+        {0, EventKind::controller, "the servo targets are those of the caller's function"});
   planned_ = end_ =
       static_cast<long>(series.samples.size()) + std::lround(options.settle / series.dt);
   plant_.set_state(controller_.start());
@@ -135,12 +136,13 @@ void Simulator::calibrate_ankles() {
     encoder_offset_.resize(0);
   }
   if (!calibration.done()) {
-    events_.push_back({0, "calibration",
+    events_.push_back({0, EventKind::calibration,
                        "the robot stands on an edge of a sole, and no offsets of the ankles' "
                        "encoders explain this"});
     return;
   }
-  for (const std::string& line : calibration.lines()) events_.push_back({0, "calibration", line});
+  for (const std::string& line : calibration.lines())
+    events_.push_back({0, EventKind::calibration, line});
 }
 
 const Measurement& Simulator::corrected(const Measurement& measurement) {
@@ -315,7 +317,7 @@ void Simulator::take_forces() {
 
 void Simulator::note(double t, const std::vector<std::string>& texts) {
   for (const std::string& text : texts)
-    if (noted_.insert(text).second) events_.push_back({t, "saturation", text});
+    if (noted_.insert(text).second) events_.push_back({t, EventKind::saturation, text});
 }
 
 const Measurement& Simulator::measure(long step) {
@@ -369,7 +371,7 @@ void Simulator::step_once() {
   move(step, out.target);
   if (report_.self_contact[0] >= 0 && !touched_) {
     touched_ = true;
-    events_.push_back({t, "contact",
+    events_.push_back({t, EventKind::contact,
                        model_->bodies()[report_.self_contact[0]].name + " touches " +
                            model_->bodies()[report_.self_contact[1]].name});
   }

@@ -365,8 +365,8 @@ McapWriter::Metadata about(const SimulationLog& log) {
 
 int level_of(const SimulationEvent& event) {
   constexpr int info = 2, warning = 3, error = 4;  // Source: the schema foxglove.Log
-  if (event.kind == "fell") return error;
-  return event.kind == "saturation" || event.kind == "contact" ? warning : info;
+  if (event.kind == EventKind::fell) return error;
+  return event.kind == EventKind::saturation || event.kind == EventKind::contact ? warning : info;
 }
 
 }  // namespace

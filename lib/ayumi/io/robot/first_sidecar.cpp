@@ -610,7 +610,7 @@ std::vector<std::string> to_do_list(const RobotModel& model, const RobotGuess& g
   items.push_back("State the continuous torque of the motors.");
   items.push_back("State place, latency and noise of the sensors.");
   for (const ModelWarning& warning : diagnose(model))
-    if (warning.kind == "link")
+    if (warning.subject == ModelWarning::Subject::link)
       items.push_back("Check " + warning.where + ": " + warning.message + ".");
   return items;
 }

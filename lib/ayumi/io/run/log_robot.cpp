@@ -42,8 +42,9 @@ struct Carried {
 // Whether the log is of a robot that a case of a study has drawn. The log does not contain the
 // masses and lengths of such a robot.
 bool is_of_drawn_robot(const SimulationLog& log) {
-  return std::any_of(log.events.begin(), log.events.end(),
-                     [](const SimulationEvent& event) { return event.kind == "case"; });
+  return std::any_of(log.events.begin(), log.events.end(), [](const SimulationEvent& event) {
+    return event.kind == EventKind::study_case;
+  });
 }
 
 std::vector<Carried> carried_of(const RobotModel& model, const SimulationLog& log,

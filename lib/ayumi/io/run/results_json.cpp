@@ -83,7 +83,7 @@ OrderedJson cause_json(const InfeasibilityCause& cause) {
 
 OrderedJson json_of(const SafetyViolation& v) {
   const bool in_motion = v.t >= v.begin && v.t <= v.end;
-  return {{"kind", v.kind},
+  return {{"kind", name_of(v.kind)},
           {"joint", v.joint},
           {"at_s", v.t},
           {"pattern_at_s", in_motion ? OrderedJson(v.t - v.begin) : OrderedJson(nullptr)},
@@ -160,7 +160,7 @@ OrderedJson json_of_run(const SimulationLog& log, size_t rows, const std::string
   const SimulationResult& r = log.result;
   OrderedJson events = OrderedJson::array();
   for (const SimulationEvent& event : log.events)
-    events.push_back({{"t_s", event.t}, {"kind", event.kind}, {"text", event.text}});
+    events.push_back({{"t_s", event.t}, {"kind", name_of(event.kind)}, {"text", event.text}});
   OrderedJson places = OrderedJson::object();
   for (const auto& [key, share] :
        {std::pair("max_joint_speed_ratio", r.speed), {"max_torque_ratio", r.torque}})

@@ -92,11 +92,14 @@ std::vector<std::string> columns_of(const std::vector<std::string>& joints) {
   return names;
 }
 
+int index_of(const JsonNode& node, const std::vector<std::string>& names) {
+  const std::string name = node.one_of(names);
+  return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
 template <size_t N>
 int index_of(const JsonNode& node, const char* const (&names)[N]) {
-  const std::vector<std::string> all(names, names + N);
-  const std::string name = node.one_of(all);
-  return static_cast<int>(std::find(all.begin(), all.end(), name) - all.begin());
+  return index_of(node, std::vector<std::string>(names, names + N));
 }
 
 // visit(key, figure) for every figure of the result, in file order.
@@ -176,7 +179,8 @@ std::string header_of(const SimulationLog& log, size_t rows, const std::string& 
     header["scenario"].push_back(OrderedJson::parse(disturbance_text(push, false)));
   header["events"] = OrderedJson::array();
   for (const SimulationEvent& event : log.events)
-    header["events"].push_back({{"t", event.t}, {"kind", event.kind}, {"text", event.text}});
+    header["events"].push_back(
+        {{"t", event.t}, {"kind", name_of(event.kind)}, {"text", event.text}});
   header["result"] = json_of(log.result, log.joints);
   header["joints"] = log.joints;
   header["columns"] = columns_of(log.joints);
@@ -212,8 +216,9 @@ void read_header(const JsonNode& header, SimulationLog& log) {
     events.complain("the log has " + std::to_string(events.size()) + " events, but at most " +
                     std::to_string(kMostLogEvents + kMostOthers) + " are read; simulate again");
   for (const JsonNode& node : events.items())
-    log.events.push_back(
-        {node.at("t").number(), node.at("kind").string(), node.at("text").string()});
+    log.events.push_back({node.at("t").number(),
+                          static_cast<EventKind>(index_of(node.at("kind"), event_kind_names())),
+                          node.at("text").string()});
   log.joints = header.at("joints").strings();
   log.result = result_of(header.at("result"), log.joints);
 }
