@@ -27,8 +27,8 @@ GaitCycle gait_cycle(const RobotModel& model, const MotionPart& motion, int swin
 
 /// The samples of a walk, changed so that the end of the cycle equals its beginning (moved over the
 /// ground) to the last digit. The difference is spread smoothly over the cycle and fades out after
-/// it, because a sudden displacement of 0.1 um within a millisecond moves the ZMP by millimetres. A
-/// difference that is too large for a loop still shows in `gap` of the cycle.
+/// it, because a sudden displacement of 0.1 um within a millisecond moves the ZMP by millimetres.
+/// If the difference is too large for a loop, `gap` of the cycle still shows it.
 CommandSeries with_closed_cycle(const CommandSeries& series, const GaitCycle& cycle);
 
 /// The samples `first` to `last` of a motion, such as a cycle, as a motion of its own: a table of

@@ -16,8 +16,8 @@ struct WalkParameters {
   double cog_height = 0;
   double turn = 0;  ///< yaw change per step, left positive [rad]
   double side = 0;  ///< sideways distance per pair of steps, left positive [m]
-  /// Height of a stair [m]; if not 0, every stride leads to the next stair, the other foot follows,
-  /// and the world has the stairs.
+  /// Height of a stair [m]; if it is not 0, every stride leads to the next stair, the other foot
+  /// follows onto the same stair, and the pattern's world contains the stairs.
   double rise = 0;
   /// Distance by which the ZMP is moved from the middle of the standing sole towards the other
   /// foot, so that the COG sways less [m].

@@ -43,14 +43,15 @@ struct RawMotion {
 };
 
 /// The supporting feet in each row. Feet on the ground do not move relative to each other: both
-/// support the robot while their relative pose rests (2 cm/s) at one height (3 mm); otherwise the
-/// foot that is lower in the frame of the other foot supports the robot. At an immediate change of
-/// the supporting foot, both support it as long as they do not move apart along the ground (4 cm/s)
-/// or by more than 1 cm in height. In a motion with a base, a sole supports the robot if it is at
-/// rest and at most 3 mm above the lowest height that any sole has. In rows without such a sole,
-/// the thresholds of the motion decide by height, speed and load; rows where they find no sole
-/// either are flight. Intervals shorter than 20 ms belong to their neighbours. A contact begins
-/// when the foot comes to rest after a swing, and it ends when the next swing of this foot begins.
+/// support the robot while they move relative to each other at less than 2 cm/s and their heights
+/// differ by less than 3 mm. Otherwise, the foot that is lower as seen from the other foot does. If
+/// the supporting foot changes without a phase in which both are at rest, both support the robot as
+/// long as they do not move apart along the ground (4 cm/s) or by more than 1 cm in height. In a
+/// motion with a base, a sole supports the robot if it is at rest and at most 3 mm above the lowest
+/// height that any sole has. In rows without such a sole, the thresholds of the motion decide by
+/// height, speed and load; rows where they find no sole either are flight. Intervals shorter than
+/// 20 ms belong to their neighbours. A contact begins when the foot comes to rest after a swing,
+/// and it ends when the next swing of this foot begins.
 std::vector<Support> detect_supports(const RobotModel& model, const RawMotion& motion);
 
 /// One foot on the ground.
@@ -60,9 +61,10 @@ struct FootContact {
   Foothold place;
 };
 
-/// The motion as a pattern with a table named `table`: phases, level footholds, swings, and the
-/// base that follows from them (in double support by minimum jerk from one foot to the other),
-/// unless the motion has a base. It starts with the feet at the origin and the heading along x.
+/// The motion as a pattern with a table named `table`: phases, level footholds and swings. If the
+/// motion has no base, the base follows from the footholds. In double support, it changes from one
+/// foot to the other by minimum jerk, and the motion starts with the feet at the origin and the
+/// heading along x.
 struct GroundedMotion {
   Pattern pattern;
   std::vector<FootContact> contacts;  ///< contacts in the order in which they begin
