@@ -16,16 +16,16 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Ratio of the distances from the command of another joint and from the own command, below which an
-// angle follows the other joint. Chosen: a servo that follows its own command is far nearer to it,
-// and zero offsets of two degrees are a quarter of the motion of a walking joint.
+// An angle follows the command of another joint if its distance from that command is below this
+// share of its distance from its own command. Chosen: a servo that follows its own command is far
+// nearer to it, and zero offsets of two degrees are a quarter of the motion of a walking joint.
 constexpr double kFarBetter = 0.25;
 
 // Time between the compared rows [s]. Chosen: joints of walks move for tenths of a second.
 constexpr double kExchangeStep = 0.01;
 
-// Time between two answers that are tried [s]. Chosen: the answer of a servo is then at most 4 ms
-// from one of them, in which a joint of a walk (2 rad/s) moves by half a degree.
+// Step between the delays of an answer that are tried [s]. Chosen: the answer of a servo is then at
+// most 4 ms from one of them, in which a joint of a walk (2 rad/s) moves by half a degree.
 constexpr double kAnswerStep = 0.008;
 
 // Both tables at the same times; columns are joints.

@@ -28,7 +28,7 @@ constexpr Index kSurroundingRows = 50;
 constexpr double kMostLeft = 0.75;
 
 // Smallest size of a step, in its standard deviations. Chosen: in a recorded walk of 17902 rows
-// without a lost row, steps that are near a whole number of rows reach less than half of it.
+// without a lost row, steps that are near a whole number of rows reach less than half of this size.
 constexpr double kClearStep = 5;
 
 // After a lost row, all further rows are too early, so the change of the delay lasts. The constants

@@ -314,7 +314,8 @@ class Doctor {
       for (const Link& link : model_.links())
         if (link.body == left->body && link.name == model_.bodies()[left->body].name)
           compare_links(link, model_.links()[model_.find_link(model_.bodies()[right->body].name)]);
-      // Displacement of the joint before this one: its own message already names it.
+      // The displacement of the joint before this one is subtracted, because another message
+      // already names it.
       Eigen::Vector3d before = Eigen::Vector3d::Zero();
       for (const auto& [above, other] : pairs)
         if (above->body == model_.bodies()[left->body].parent &&

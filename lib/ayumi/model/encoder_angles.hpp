@@ -21,8 +21,8 @@ MeasuredAt measured_at(const std::string& name);
 /// reads 0 [rad, m], by dof. They belong to the unit, so they are the same in all its profiles.
 Eigen::VectorXd encoder_zeros(const RobotModel& model);
 
-/// The angles that the encoders read while the joints have these angles, and the reverse. If there
-/// are no zeros, or all are 0, both are the same, to the bit.
+/// Converts joint angles to the angles that the encoders read, and back [rad, m]. If `zeros` is
+/// empty or contains only 0, the result has the same bits as the argument.
 Eigen::VectorXd encoder_angles(const Eigen::VectorXd& joints, const Eigen::VectorXd& zeros);
 Eigen::VectorXd joint_angles(const Eigen::VectorXd& encoders, const Eigen::VectorXd& zeros);
 

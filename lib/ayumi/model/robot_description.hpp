@@ -64,12 +64,12 @@ struct LoadFriction {
   bool operator==(const LoadFriction&) const = default;
 };
 
-/// A position servo. It receives positions only. With the target of `delay` seconds ago, the angle
-/// phi of the motor behind the gear (the angle of the joint itself if the gear has neither backlash
-/// nor stiffness), its reading theta = phi - offset and the error e = target - theta, which is zero
-/// within the dead band and reduced by it beyond,
+/// A position servo. It receives positions only. Its target is the one of `delay` seconds ago. phi
+/// is the angle of the motor behind the gear; if the gear has neither backlash nor stiffness, phi
+/// is the angle of the joint. The servo reads theta = phi - offset. Its error e is target - theta,
+/// reduced by the dead band; within the dead band, e is zero. The motor gives
 ///   torque = kp e - kd dphi,   or with an inner speed loop   kd (clamp(kp / kd e) - dphi),
-/// bounded by the profile's peak torque and by the motor's voltage. A velocity feed-forward is a
+/// limited by the profile's peak torque and by the motor's voltage. A velocity feed-forward is a
 /// lead of delay + kd/kp seconds of the target. For a sliding joint, read m instead of rad.
 struct ServoDescription {
   double kp = 0;             ///< stiffness of the position loop [N m/rad]

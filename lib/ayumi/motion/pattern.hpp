@@ -156,7 +156,8 @@ struct CorrectionTrack {
 enum class Trust { posture, cog, zmp };
 const char* name_of(Trust trust);
 
-/// The author's preferences for a repair. The caller of the repair decides what is left out.
+/// The author's preferences for a repair. The caller of the repair chooses the values that are not
+/// stated here.
 struct RepairPreferences {
   std::vector<std::string> joints;  ///< locked joints, which stay bit-identical
   std::array<bool, 2> feet = {};    ///< locked feet, by Side, which keep their path
