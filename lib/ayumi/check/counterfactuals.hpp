@@ -13,8 +13,7 @@ bool touches_by_limits(const JudgedMotion& motion, const Violation& collision);
 /// Whether the distance of the bodies depends on this joint.
 bool sets_distance(const JudgedMotion& motion, const Violation& collision, int dof);
 
-/// Whether the distance depends on this joint. It is false for a joint outside the legs if one of
-/// the bodies is the trunk.
+/// As sets_distance(), but false for a joint outside the legs if one of the bodies is the trunk.
 bool hangs_on(const JudgedMotion& motion, const Violation& collision, int dof);
 
 /// Whether the torque of a flight is within its limit if no external force or moment acts on the

@@ -21,7 +21,7 @@ struct Mistake {
   std::string words;
   bool explains_all = false;  ///< after the correction, the pattern is consistent
   bool is_cause = true;       ///< if false, no cause was found, and the words say what was tried
-  int round = 0;              ///< as of an Explanation: mistakes of one round are alternatives
+  int round = 0;              ///< as Explanation::round: mistakes of one round are alternatives
 
   std::string text() const { return place.empty() ? words : place + ": " + words; }
 };

@@ -17,9 +17,9 @@ namespace ayumi {
 
 namespace {
 
-// Numbers of values that are left out on trial, that get the other sign, and that are examined
-// closely. Chosen: a time at which a motion fails lies between at most two keys of each of about
-// ten tracks.
+// Largest numbers of values that are left out one at a time, that are tried with the other sign,
+// and that are examined closely. Chosen: a time at which a motion fails lies between at most two
+// keys of each of about ten tracks.
 constexpr size_t kTriedValues = 24;
 constexpr size_t kTriedSigns = 12;
 constexpr size_t kSuspects = 3;
@@ -560,7 +560,7 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
       if (best.empty() && again.empty()) break;
       std::vector<Candidate> unsampled;
       for (Candidate& c : best) {
-        // A quick trial does not see all that is wrong at the servo's period.
+        // A quick trial does not find the errors that only show at the servo's period.
         const bool looked_closer = c.outcome.good() && !trials.exact();
         if (looked_closer) c.outcome = trials.exactly(current, c.hypothesis.mend);
         if (c.outcome.errors == kUnsampled) {
@@ -582,7 +582,7 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
         possible.push_back(std::move(c));
       }
       if (trials.ended()) break;
-      // The next best ones may be possible.
+      // The next best explanations may be possible.
       unsampled.insert(unsampled.end(), again.begin(), again.end());
       search->drop(unsampled);
     }

@@ -118,7 +118,8 @@ TrialOutcome Trials::of(const Pattern& pattern, bool exact) const {
 
 std::vector<TrialOutcome> Trials::after(const Pattern& pattern, const std::vector<Mend>& mends) {
   std::vector<TrialOutcome> outcomes(mends.size());
-  std::vector<std::pair<size_t, Pattern>> mended;  // few at once: a long pattern is large
+  // Only a few versions exist at once, because a long pattern needs much memory.
+  std::vector<std::pair<size_t, Pattern>> mended;
   const auto try_mended = [&] {
     report(progress_, {"looking for the cause", -1, ""});  // may stop the search
     std::atomic<bool> stop = false;
@@ -135,7 +136,7 @@ std::vector<TrialOutcome> Trials::after(const Pattern& pattern, const std::vecto
       ended_ = true;
       break;
     }
-    std::optional<Pattern> version(pattern);  // empty where the change cannot be made
+    std::optional<Pattern> version(pattern);  // empty if the change cannot be made
     try {
       mends[i](*version);
     } catch (const Error&) {

@@ -53,11 +53,12 @@ constexpr double kShortRest = 4;
 // Times of rest that are tried, in time constants of the COG. Chosen: up to the time in which the
 // COG comes to rest, and half as much again.
 constexpr std::array kRests = {2.0, 3.0, 4.0, 6.0};
-// The planner moves ZMP keys near an end that has no rest. The motion also changes this long before
-// or after the movement of the ZMP, in time constants of the COG. Derived: e^-2 is 14 %.
+// The planner moves ZMP keys near an end that has no rest. Such a change also affects the motion
+// for this time before or after the movement of the ZMP, in time constants of the COG. Derived:
+// e^-2 is 14 %.
 constexpr double kRestReach = 2;
-// Number of steps of a second in which rests are named. Chosen: an author writes tenths of a
-// second.
+// Times of rest are named in whole multiples of a second divided by this number. Chosen: an author
+// writes tenths of a second.
 constexpr double kRestsPerSecond = 10;
 // Number of bisection steps in the search for a time. Chosen: an interval of a second becomes a
 // microsecond, and times are written in milliseconds.
@@ -129,9 +130,9 @@ void stoops(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
     const Keyframe &leaves = of.pattern.keyframes[keys[*off]],
                    &lands = of.pattern.keyframes[keys[*off + 1]];
     const double mean = (*lands.cog_height - *leaves.cog_height) / flight;
-    // For each end of the flight: the neighbouring key outside the flight, the key at this end,
-    // and the mean vertical speed of the flight, where time runs away from the first of these
-    // keys.
+    // For each end of the flight: the neighbouring key outside the flight, the key at this end, and
+    // the mean vertical speed of the flight. The sign of the speed is for a time that runs from the
+    // first of these keys into the flight.
     std::vector<std::tuple<size_t, const Keyframe*, double>> sides;
     if (*off > 0) sides.emplace_back(keys[*off - 1], &leaves, mean);
     if (*off + 2 < keys.size()) sides.emplace_back(keys[*off + 2], &lands, -mean);
@@ -382,7 +383,7 @@ void shorter_flights(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
     for (size_t i = 0; i < of.pattern.phases.size(); ++i) {
       if (of.pattern.phases[i].support != Support::none) continue;
       const double begin = of.begin_of(i), end = of.pattern.phases[i].until;
-      const double now = std::round(1e3 * share * (end - begin)) / 1e3;  // as it is written
+      const double now = std::round(1e3 * share * (end - begin)) / 1e3;  // rounded to 1 ms
       if (flights.empty()) {
         first = i;
         lasts = end - begin;

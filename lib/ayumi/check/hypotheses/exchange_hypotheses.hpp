@@ -1,5 +1,6 @@
 #pragma once
-// Exchanges: left and right, x and y, or two footholds.
+// Mistakes in which two things were exchanged: left and right, x and y, or two footholds. Each
+// function adds to `made` the changes of the pattern that it describes.
 
 #include <vector>
 
