@@ -32,8 +32,8 @@ class MissedOnTheWay : public Error {
 class LinkPlan {
  public:
   /// `solved` marks the joints of the legs. Throws Error(bad_pattern) "file: place: ..." for an
-  /// unknown link, one that no joint moves alone or that a leg moves, and for a robot without the
-  /// hand or the head that a key names.
+  /// unknown link, for a link of a leg, for a link that has no joint between itself and the trunk,
+  /// and for a robot without the hand or the head that a key names.
   LinkPlan(const RobotModel& model, const Pattern& pattern, const std::vector<bool>& solved);
 
   bool empty() const { return groups_.empty(); }
@@ -82,8 +82,8 @@ class LinkPlan {
         Eigen::Vector3d::Zero();  ///< direction of the link, body frame, unit vector
     double length = 0;            ///< length of the limb [m]
     std::vector<int> dofs;
-    /// Bodies that carry the target and that its group moves, root first, and their places among
-    /// the dofs of the group.
+    /// The bodies on the way from the root to the target that joints of the group move, root first,
+    /// each with the index of its joint in Group::dofs.
     std::vector<std::pair<int, Eigen::Index>> chain;
     std::vector<Anchor> anchors;
     Blend place, direction;

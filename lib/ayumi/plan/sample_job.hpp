@@ -38,9 +38,9 @@ struct SampleJob {
 /// rounding only.
 inline constexpr int kBlock = 256;
 
-/// Calls work(first, end) for blocks of `block` of the numbers 0..count-1, on the threads of the
-/// job. Reports the stage from time to time if there are very many blocks. With `block` = 0, there
-/// is only one block.
+/// Divides the numbers 0..count-1 into blocks of `block` numbers and calls work(first, end) for
+/// each block, on the threads of the job. Reports the stage from time to time if there are very
+/// many blocks. With `block` = 0, there is only one block.
 template <class Work>
 void in_blocks(const SampleJob& job, const char* stage, int count, int block, const Work& work) {
   // Blocks between two reports. Chosen: they take a fraction of a second.

@@ -58,9 +58,8 @@ constexpr double kSeenMove = 0.05, kSeenShare = 0.15;
 // Share of the move within which an extreme that is held counts as reached. Chosen: in a quintic
 // between rests, 2 % of the distance are left after 86 % of the time.
 constexpr double kReached = 0.02;
-// A curve that stays near an extreme for less than this time passes it and does not rest there [s].
-// Chosen: a kick or a nod
-// stays near its end for a quarter of a second.
+// A curve that stays near an extreme for less than this time only passes it and does not rest there
+// [s]. Chosen: a kick or a nod stays near its end for a quarter of a second.
 constexpr double kPassed = 0.5;
 
 /// Adds the instants at which a curve turns back or comes to rest after a move of at least `least`,

@@ -16,8 +16,8 @@ double duration(const SimulationLog& log);
 /// A text such as " (l_knee at 2.90 s)", which follows the share; "" if its place is unknown.
 std::string place_in_brackets(const SimulationLog& log, const JointShare& share);
 
-/// The sample at `t` (held within the log). Continuous quantities are interpolated between ticks;
-/// contacts and push are those of the tick before.
+/// The sample at `t`, which is limited to the times of the log. Continuous quantities are
+/// interpolated between ticks; contacts and push are those of the tick before.
 SimulationSample sample_at(const SimulationLog& log, double t);
 
 /// The floor's frame in the world at `t`: the slope and every motion of the floor, including those

@@ -91,9 +91,9 @@ inline constexpr double kLightShare = 0.5;
 /// samples, some of the samples are enough. No measured case changes between half and twice the
 /// value (constants.md). Test: none.
 inline constexpr int kMostPerError = 12;
-/// A row with less room than this (share of its limit, or rad) is active, and rows of the same
-/// limit are put beside it. Chosen. No measured case changes between half and twice the value
-/// (constants.md). Test: none.
+/// A row is active if its distance from its limit is smaller than this (as a share of the limit, or
+/// in rad). Further rows of the same limit are then placed beside it. Chosen. No measured case
+/// changes between half and twice the value (constants.md). Test: none.
 inline constexpr double kActive = 1e-3;
 /// Value of kActive for rows of friction, as a share of the available friction. Reason: the cone
 /// curves. With half of the value, the number of iterations of the case "grip" changes from 95 to
@@ -199,9 +199,9 @@ inline constexpr double kSoftShare = 0.6;
 /// between two points. With half of the value, the change of the case "early" changes from 0.0359
 /// to 0.057; with twice, to 0.00761. Test: none.
 inline constexpr double kSoftUpwards = 0.4;
-/// Where a contact begins or ends, share of the height at which a swing may continue that the
-/// middle of the sole may have. Chosen: a tenth is 6 micrometres, far above the solver's tolerance.
-/// Test: FromScratch.JumpsOfATallRobotNeedFewPrograms.
+/// Largest height of the middle of a sole at the first and the last sample of a contact, as a share
+/// of the height up to which a swing may continue. Chosen: a tenth is 6 micrometres, far above the
+/// solver's tolerance. Test: FromScratch.JumpsOfATallRobotNeedFewPrograms.
 inline constexpr double kEdgeShare = 0.9;
 /// Half the band in which a locked foot stays on its path [m], [rad]. Derived: the documented
 /// 0.01 mm. Test: Faults.LockedFootKeepsItsWayAndWeightsSteer.
@@ -312,8 +312,9 @@ inline constexpr double kEdgeAllowance = 1e-4;
 inline constexpr double kSameDistance = 1e-6;
 }  // namespace clearance
 
-/// Largest share of a step of the table by which the row of its rate is made stricter. Chosen:
-/// kinks of usual motions give less than 0.01; a jump is repaired by its own rows. Test:
+/// The bound of a joint's rate is reduced where a step of the table would exceed the rate because
+/// of a kink. This is the largest reduction, as a share of the speed limit. Chosen: kinks of usual
+/// motions give less than 0.01; a jump is repaired by its own rows. Test:
 /// FromScratch.JumpsOfATallRobotNeedFewPrograms.
 inline constexpr double kMostBeyond = 0.05;
 

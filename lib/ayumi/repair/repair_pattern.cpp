@@ -76,7 +76,7 @@ double longest_flight(const Pattern& pattern) {
   return longest;
 }
 
-// The starts of a plan, and what they are judged by.
+// Makes starts of a generated motion from the plan of a pattern, and judges them by the check.
 class PlanStarts {
  public:
   PlanStarts(const RobotModel& model, const Pattern& pattern, const RepairOptions& options,

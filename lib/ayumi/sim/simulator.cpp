@@ -29,10 +29,10 @@ constexpr double kBeforeStart = 0.4;
 /// as an offset of 3 degrees takes (sim/standing_calibration).
 constexpr double kLongestCalibration = 3;
 /// Step of Ayumi's own plant and of the sensors during this time [s]; another plant keeps its tick.
-/// Chosen: the robot hardly moves, and the examination then takes a quarter of the time. Of 200
-/// draws of HOAP-1's uncertainty, 7 decide differently than with 1 ms whether an offset is found,
-/// and another seed of the noise changes 11 or 17 decisions. With half of the step, 1 decides
-/// differently; with twice, 8 (docs/theory_plant.md).
+/// Chosen: the robot hardly moves, and the examination then takes a quarter of the time. In 7 of
+/// 200 draws of HOAP-1's uncertainty, the decision whether an offset is found differs from that
+/// with 1 ms; another seed of the noise changes 11 or 17 of the 200 decisions. With half of this
+/// step, 1 decision differs; with twice, 8 (docs/theory_plant.md).
 constexpr double kCalibrationStep = 0.004;
 /// Simulated time after a fall [s]. Chosen: the robot has reached the ground, which a replay shows.
 /// Between half and twice the value, figures change by less than 5 %.

@@ -49,10 +49,10 @@ class PathLimits {
   /// The points of the path. They have rows after linearize().
   const std::vector<TimingPoint>& points() const { return timing_; }
 
-  /// Makes the rows about a timing with these u and x by point. `share` gives, by point, the part
-  /// of the room between standing still and a limit that may be used. In a motion with a flight,
-  /// bounds are raised where necessary, so that the path's own pace (u = 0, x = 1) satisfies all
-  /// rows; no other pace is possible in flight.
+  /// Makes the rows about a timing with these u and x by point. `share` says for each point how
+  /// much of the distance between standing still and a limit may be used. In a motion with a
+  /// flight, bounds are raised where necessary, so that the path's own pace (u = 0, x = 1)
+  /// satisfies all rows; no other pace is possible in flight.
   void linearize(const std::vector<double>& u, const std::vector<double>& x,
                  const std::vector<double>& share);
 

@@ -28,8 +28,8 @@ class ContactRows {
   bool all_stick() const;
 
   /// Adds these contacts, as they were in the last solve, to the rows of the step's matrix as
-  /// springs that push and pull, and to the right side `x` in the order of places. The other
-  /// contacts stay open.
+  /// springs that push and pull, and to the right side `x`, whose entries have the order of
+  /// `factor` (places). The other contacts stay open.
   void add_springs(const RobotData& data, const TreeCholesky& factor, std::vector<double>& matrix,
                    Eigen::VectorXd& x);
 
