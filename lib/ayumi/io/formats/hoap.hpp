@@ -49,11 +49,10 @@ struct HoapFile {
   double dt() const { return 0.001 * tick_ms; }
 };
 
-/// Blanks, CR, `-0` and any text after the motors are accepted. The interval between rows that
-/// state none is that of their layout, or `interval_ms` if this is above 0. Throws Error(bad_file)
-/// "file:line: ..." if no layout of the robot has this number of columns, if a value is not a count
-/// of 16 bits (or not an angle), if an interval is not a positive whole number, and if there are no
-/// rows.
+/// Blanks, CR, `-0` and any text after the motors are accepted. If the rows state no interval, it
+/// is that of their layout, or `interval_ms` if this is above 0. Throws Error(bad_file) "file:line:
+/// ..." if no layout of the robot has this number of columns, if a value is not a count of 16 bits
+/// (or not an angle), if an interval is not a positive whole number, and if there are no rows.
 HoapFile parse_hoap(const std::string& bytes, const std::string& file, const RobotModel& model,
                     int interval_ms = 0);
 

@@ -124,8 +124,8 @@ std::string probe() {
 
 using Files = std::map<std::string, std::string>;
 
-// The place in the file of what MuJoCo complains about. Its message ends with the line of the text
-// that it was given, in one of two forms.
+// Throws the complaint of MuJoCo with its place in the file. MuJoCo's message ends with a line
+// number of the text that it was given, in one of two forms.
 [[noreturn]] void complain(const fs::path& path, const MjcfText& text, std::string words) {
   static const std::regex place("(, |\n)?line (= )?(\\d+)(, column = -?\\d+)?");
   std::smatch match;

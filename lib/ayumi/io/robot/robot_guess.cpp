@@ -433,9 +433,9 @@ void find_facing(const RobotModel& model, RobotGuess& guess) {
 // ---- soles
 
 // The attitude in which the foot comes to rest on the ground under a load at this place. It makes
-// the facet of the hull below this place level. The facet is found by a triangle around the place,
-// which takes in the lowest point below its plane until there is none; under the place, this plane
-// can only sink.
+// the facet of the hull below this place level. To find the facet, a triangle around the place is
+// changed step by step: the lowest point below its plane replaces one of its corners, until no
+// point is below the plane. Each step lowers the plane at the place.
 Eigen::Matrix3d settled(const Points& points, const Vector2d& load) {
   // Corners of the first triangle [m] and rounding of the height over a plane [m]. Definition: far
   // outside of any foot, and far below the accuracy with which a sole is measured.
