@@ -23,9 +23,10 @@ GroundPose ground_pose(const RobotModel& model, Side side, const Eigen::Isometry
 /// The level sole frame at height z [m] for a sole whose centre and heading are `pose`.
 Eigen::Isometry3d sole_frame(const RobotModel& model, Side side, const GroundPose& pose, double z);
 
-/// b of every foothold. It is the DCM minus the foothold at the moment when the foot lands, so that
-/// the pendulum reaches b of the next foothold after `growth` = exp(omega T) while its ZMP is on
-/// this one. `last` is b of the last foothold.
+/// The offset b [m] of every foothold: the DCM minus the foothold at the moment when the foot
+/// lands. During a step with the ZMP on this foothold, the distance of the DCM from it grows by the
+/// factor `growth` = exp(omega T). At the end, the DCM has the offset b of the next foothold from
+/// that foothold. `last` is b of the last foothold.
 std::vector<Eigen::Vector2d> landing_offsets(const std::vector<Eigen::Vector2d>& footholds,
                                              double growth, const Eigen::Vector2d& last);
 

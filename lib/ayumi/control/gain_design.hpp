@@ -62,9 +62,10 @@ DtadParams design_gains(double omega, const GainWishes& wishes, DtadParams param
 /// there is none.
 double largest_stable_ka(const std::vector<LoopModel>& loops, DtadParams params, double most = 20);
 
-/// Gains with which all loops are stable: ks and kd together, damp, ka and tau_z, with as few and
-/// as small changes as possible. They are the first tried gains whose errors decay within
-/// kSlowestDecay / omega, or else the ones with the fastest decay. Empty if none of them is stable.
+/// Gains with which all loops are stable. Only ks and kd (together), damp, ka and tau_z are
+/// changed, in as few and as small steps as possible. The result is the first tried choice whose
+/// errors decay within kSlowestDecay / omega (gain_design.cpp), or else the choice with the fastest
+/// decay. Empty if no choice is stable.
 std::optional<DtadParams> nearest_stable_gains(const std::vector<LoopModel>& loops,
                                                const DtadParams& params);
 
@@ -76,9 +77,9 @@ std::vector<std::pair<std::string, double>> changed_loop_gains(const DtadParams&
 /// If a loop is unstable, throws Error(usage) that names the growing mode and stable gains nearby.
 void refuse_unstable(const std::vector<LoopModel>& loops, const DtadParams& params);
 
-/// The reason why a robot should not be run with a controller at this COG height, in the words of
-/// refuse_unstable(). Empty if the loop is stable, and for demonstrations (dtad-literal,
-/// as_printed), other controllers and legs without servos.
+/// The reason why a robot should not be run with a controller at this COG height [m] and with this
+/// tick [s], in the words of refuse_unstable(). Empty if the loop is stable, and for demonstrations
+/// (dtad-literal, as_printed), other controllers and legs without servos.
 std::string instability(const RobotModel& model, const ActuatorLimits& actuators,
                         const ControllerSpec& spec, double height, double tick);
 

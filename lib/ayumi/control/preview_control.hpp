@@ -11,7 +11,7 @@
 
 namespace ayumi {
 
-/// The gains for the cart-table with the state (x, dx, ddx), in units of time of 1/omega:
+/// The gains for the cart-table with the state (x, dx, ddx), where the unit of time is 1/omega:
 ///   jerk(k) = -integral sum_{i<=k} e(i) - state (x, dx, ddx)(k) - sum_j preview(j) planned
 ///   ZMP(k+j),
 /// where ZMP = x - ddx and e = ZMP - planned ZMP. It minimizes the sum of e^2 + effort / tick^2

@@ -72,8 +72,9 @@ Vector6d own_flight_wrench(const RowSite& site, int sample) {
 const RowKind kFlightRows = {
     .name = "flight", .unit = &RowPrices::length, .relaxed = &RowPrices::foot, .order = {4, 0}};
 
-// The band is a share of what the check allows, divided among three axes, or the motion's own value
-// if this passes. The deviation of one sample from the mean moment is rounding and is not changed.
+// The band is a share of the deviation that the check allows, divided among three axes. If the
+// motion's own value is small enough (own_share), the band reaches to this value. The deviation of
+// one sample from the mean moment is rounding and is not changed.
 void place_flight_rows(RowSite& site) {
   const auto& settings = site.settings.flight;
   const double weight = site.weight();

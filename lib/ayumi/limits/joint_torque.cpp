@@ -22,8 +22,8 @@ constexpr double kWholeTorque = 1;
 
 // Torque that a joint without a motor may carry even if its stated dry friction is smaller: the
 // weight of the robot times this lever [m]. Chosen: a limp hand hangs and swings freely, and the
-// joints of a leg that stands on bent knees need 20 times as much. No measured case changes from
-// half to twice, because the robots there have motors in all joints.
+// joints of a leg that stands on bent knees need 20 times as much. No measured case changes between
+// half and twice the value, because the robots of these cases have motors in all joints.
 constexpr double kLimpLever = 1e-3;
 
 // The largest torque of a joint; infinite if nothing is known about it.

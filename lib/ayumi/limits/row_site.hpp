@@ -43,7 +43,7 @@ struct CollocationPoint {
 std::array<Vector6d, 2> shared_load(const RobotModel& model, const CollocationPoint& point,
                                     const Eigen::Vector3d& base, const Vector6d& base_wrench);
 
-/// The requirements of a repair on the rows. The values, their reasons and their sources are in
+/// The values with which a repair places the rows. Their reasons and sources are in
 /// repair/policy.hpp.
 struct RowSettings {
   Trust trust = Trust::posture;

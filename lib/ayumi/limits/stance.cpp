@@ -33,8 +33,8 @@ constexpr double kDepthTolerance = 0.001;
 // 0.00515.
 constexpr double kFloatTolerance = 0.0003;
 
-// The depth of a sole below the ground of a swing, which is the lower of the places where the foot
-// stood and where it will stand.
+// The depth of a sole below the ground of a swing. This ground is the lower one of the two places
+// where the foot stood and where it will stand.
 double swing_depth(const JudgedMotion& motion, Side side, int k, const Eigen::Isometry3d& sole) {
   const int s = static_cast<int>(side);
   const int i = motion.plan.index[s][k];

@@ -14,7 +14,7 @@ namespace ayumi {
 namespace {
 
 // Margin below which a ZMP inside the support gets a warning, and smallest margin of a repaired
-// motion [m]. Chosen: a few hundredths of the width of small soles (5 cm). Half or twice of it
+// motion [m]. Chosen: a few hundredths of the width of small soles (5 cm). Half or twice the value
 // changes no verdict of a check. With half of the value, the largest yaw ratio of the case "fast"
 // changes from 0.375 to 0.423; with twice, the check of this case finds 3 warnings of
 // support_margin instead of 4.

@@ -28,8 +28,7 @@ using Eigen::VectorXd;
 namespace {
 
 // Largest landing speed without a warning [m/s]. Chosen: a fall from 1 mm reaches 0.14 m/s. It is
-// only a warning; half or twice of it changes no verdict. No measured case changes between half and
-// twice the value (constants.md).
+// only a warning. No measured case changes between half and twice the value (constants.md).
 constexpr double kLandingTolerance = 0.15;
 
 double landing_speed(const JudgedMotion& motion, Side side, const ContactInterval& contact) {

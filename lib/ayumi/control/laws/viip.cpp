@@ -7,11 +7,11 @@
 //   w2    = reffz / (m zr)                                            (17)
 //   ddxr  = w2 (xr - Z(dcm_r)) + ka w2 (zhat - Z(dcm^)) + av w (dx^ - dxr) + ax w^2 (x^ - xr)
 //          - moment L'y / (m zr)
-// The first term is (14) of the reference pendulum, the second the short-term absorption of
-// laws/dtad.cpp, the next two keep the reference at the robot, and the last one leaves the ZMP
-// where it is while the angular momentum L of the reference changes. The velocity in the dcm^ of Z
-// has passed a low pass. kz depends on the feet that carry load. A foot lands where dcm^ will need
-// it: Z + (dcm^ - Z) E - b. The joints follow by (28)(29), control/whole_body.
+// The first term is (14) of the reference pendulum, and the second is the short-term absorption of
+// laws/dtad.cpp. The next two terms keep the reference near the robot. With the last term, the ZMP
+// stays where it is while the angular momentum L of the reference changes. The velocity in the dcm^
+// of Z has passed a low pass. kz depends on the feet that carry load. A foot lands where dcm^ will
+// need it: Z + (dcm^ - Z) E - b. The joints follow by (28)(29), control/whole_body.
 #include "ayumi/control/laws/viip.hpp"
 
 #include <algorithm>
@@ -387,8 +387,9 @@ Viip::WantedZmp Viip::regulate(const Vector2d& dcm, int state) const {
   return {moving(), stands};
 }
 
-// The noise of the measured velocity moves ref ZMP. (14)(15) with the measured ZMP carry the
-// velocity on, so its low pass delays only what the ground does not explain. A push ends the delay.
+// The noise of the measured velocity moves ref ZMP. (14)(15) with the measured ZMP predict the
+// change of the velocity, so the low pass delays only the part of the change that the ground force
+// does not explain. After a push, the measured velocity is used without delay.
 void Viip::follow_velocity(const Estimate& e) {
   const Vector2d measured = e.dcog.head<2>();
   if (e.contact) {
@@ -396,7 +397,7 @@ void Viip::follow_velocity(const Estimate& e) {
     velocity_ += dt_ * horizontal_acceleration(w2, e.cog.head<2>(), e.zmp.head<2>());
   }
   velocity_ += low_pass_share(dt_, omega_, kVelocityFilterTime) * (measured - velocity_);
-  // The negation also replaces what is not a number.
+  // The comparison is negated so that a velocity that is not a number is replaced, too.
   if (!((measured - velocity_).norm() <= kVelocityJump * omega_ * height_)) velocity_ = measured;
 }
 

@@ -2,10 +2,10 @@
 // z'' = f_z/m - g.
 //   stoop    f_z/m = (kz w)^2 (r - zd - z) - 2 dz kz w z' + g            (24)(25)
 //   push     f_z/m = k (r - z) + g,  k = 2 g zH / zd^2, until z = r      (26)
-//            in its last tick z' = sqrt(2 g (r + zH - z)): the planned apex whatever the tick
+//            in its last tick z' = sqrt(2 g (r + zH - z)), so the tick does not change the apex
 //   flight   ballistic; no foot is anchored and momentum gives the base velocity,
 //            V_b = M_bb^-1 ([m v; L_B] - M_bq dtheta),  L_B = L + (p_G - p_B) x m v,
-//            with L its own at release; the IMU gives the attitude, the parabola the position
+//            with L of the release; the IMU gives the attitude, the parabola the position
 //   landing  f_z/m = k (z1 - z) + g, k = z1'^2 / zd^2, until z' = 0      (27)
 //   settle   as the stoop, towards r
 // The angular momentum is zero at release. The angular momentum of a resolution (28) is affine in
