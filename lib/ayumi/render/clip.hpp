@@ -48,9 +48,9 @@ struct ClipOptions {
 };
 
 struct ClipSummary {
-  int frames = 0;
-  int width = 0, height = 0;  ///< size [pixel]
-  double fps = 0;
+  int frames = 0;                 ///< number of frames; 1 for a single picture
+  int width = 0, height = 0;      ///< size [pixel]
+  double fps = 0;                 ///< frames per second of a clip
   std::optional<double> at = {};  ///< time of a single picture [s]
   std::vector<std::string> notes =
       {};  ///< what is drawn differently from the robot's files, and why

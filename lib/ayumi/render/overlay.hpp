@@ -43,6 +43,7 @@ struct Overlay {
   std::vector<Label> labels;
 };
 
+/// Colours of the marks: sRGB and alpha, from 0 to 1.
 namespace overlay_color {
 inline const Eigen::Vector4f kCog = {0.95f, 0.72f, 0.10f, 1};
 inline const Eigen::Vector4f kZmp = {0.84f, 0.15f, 0.12f, 1};

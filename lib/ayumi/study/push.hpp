@@ -80,6 +80,7 @@ double push_froude(const PushCase& push, double impulse);
 
 /// Figures over a group of cases, in capture bounds.
 struct PushSummary {
+  /// Smallest and mean limit with the controller, and the same in open loop.
   double worst = 0, mean = 0, open_worst = 0, open_mean = 0;
   double worst_speed = 0, mean_speed = 0;    ///< J/m of the worst case, and the mean [m/s]
   double worst_froude = 0, mean_froude = 0;  ///< J/(m sqrt(g z)) of the worst case, and the mean

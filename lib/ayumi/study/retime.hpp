@@ -24,7 +24,7 @@ struct FastestPace {
   bool bounded = false;     ///< false if even `fastest` passes
   std::string limited_by;   ///< first error at the scale just below, in words
   bool by_posture = false;  ///< this error is in the posture of a table, which no pace changes
-  int evaluations = 0;
+  int evaluations = 0;      ///< number of scales that were sampled and checked
 };
 
 /// Bisection between a scale that passes the check and one that does not. The search begins at 1.

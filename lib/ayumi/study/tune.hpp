@@ -35,9 +35,9 @@ struct TuneOptions {
 /// that fells the robot, plus the mean of |ZMP - reference ZMP| / z of the run without a push.
 struct TuneFigures {
   double objective = 0;
-  double recovery = 0;  ///< part of the objective from the pushes that the robot survives
-  double unpushed = 0;  ///< part of the objective from the run without a push
-  int falls = 0, pushes = 0;
+  double recovery = 0;        ///< part of the objective from the pushes that the robot survives
+  double unpushed = 0;        ///< part of the objective from the run without a push
+  int falls = 0, pushes = 0;  ///< numbers of pushes that fell the robot, and of all pushes
 };
 
 struct TuneResult {
