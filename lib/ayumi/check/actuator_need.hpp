@@ -20,9 +20,9 @@ struct ActuatorNeed {
 ActuatorNeed actuator_need(const RobotModel& model, const CommandSeries& series,
                            const CheckOptions& options, const ConsistencyReport& report);
 
-/// For the goals of VIIP, during which a series only holds a posture: the need of the first goal
-/// whose keyed form is too much for the profile of `options`, or the reason why there is no keyed
-/// form.
+/// The need that follows from the goals of VIIP, during which a series only holds a posture. It is
+/// the need of the first goal whose keyed form is too much for the profile of `options`, or the
+/// reason why a goal has no keyed form.
 ActuatorNeed actuator_need(const RobotModel& model, const std::vector<KeyedGoal>& goals,
                            const CheckOptions& options);
 

@@ -20,9 +20,9 @@ bool hangs_on(const JudgedMotion& motion, const Violation& collision, int dof);
 /// robot.
 bool holds_in_free_flight(JudgedMotion& motion, const Violation& torque);
 
-/// Whether the COG error is explained by the foot error: the COG error is at most the displacement
-/// of the sole, or it vanishes when the robot is moved rigidly so that the sole is in its place. A
-/// swinging sole always explains it.
+/// Whether the foot error explains the COG error. This is so if the COG error is at most the
+/// displacement of the sole, or if it vanishes when the robot is moved rigidly so that the sole is
+/// in its place. A swinging sole always explains it.
 bool moves_cog(const JudgedMotion& motion, const Violation& foot, const Violation& cog);
 
 /// Whether the ZMP is outside the support because the command puts it there, so that no posture is

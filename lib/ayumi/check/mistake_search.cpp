@@ -108,8 +108,8 @@ class Search {
         {Rank::unit, Kind::times, true}, {Rank::slip, Kind::exchanges},
         {Rank::sign, Kind::missing},     {Rank::amount, Kind::nearer},
         {Rank::amount, Kind::paces},     {Rank::amount, Kind::small_swings, false, true}};
-    // For slight errors, a hypothesis of another sign, digit or foot is not tried unless something
-    // in the pattern speaks for it.
+    // For slight errors, a hypothesis of another sign, digit or foot is only tried if something in
+    // the pattern makes it likely.
     static const std::vector<Stage> slight = {{Rank::unit, Kind::units},
                                               {Rank::unit, Kind::irregular, true},
                                               {Rank::amount, Kind::nearer},
@@ -596,7 +596,7 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
     found = left;
   }
   if (!found.good()) {
-    // These few trials are made even if the search ended, because nothing else names a way out.
+    // These few trials are made even if the search ended, because nothing else has found a remedy.
     const auto hop = smaller_hop(Trials(model, pattern, options, progress, kHopTrials), model,
                                  pattern, given, found.errors);
     if (hop) {

@@ -48,9 +48,9 @@ inline Eigen::Vector2d short_term_acceleration(double gain, double omega2,
 }
 
 /// Damping of the rocking of the robot on its soft soles and servos [m/s^2]. The reference follows
-/// the measured velocity of the COG, from which it differs by `estimate.dcog - reference_dcog`
-/// [m/s], with the rate gain * omega and a bounded acceleration. z is the height of the COG [m].
-/// docs/theory.md, "Late sensors".
+/// the measured velocity of the COG with the rate gain * omega and a bounded acceleration.
+/// `estimate.dcog - reference_dcog` is its distance from this velocity [m/s]. z is the height of
+/// the COG [m]. docs/theory.md, "Late sensors".
 Eigen::Vector2d rocking_acceleration(double gain, double omega, double z,
                                      const Eigen::Vector3d& reference_dcog,
                                      const Estimate& estimate);

@@ -1,7 +1,7 @@
 #pragma once
-// The places where VIIP puts the feet: a nominal path of footholds, and the DCM (divergent
-// component of motion, x + dx/omega) that the pendulum must have when a foot lands so that the
-// robot can continue on this path.
+// The places where VIIP puts the feet. They follow from a nominal path of footholds, and from the
+// DCM (divergent component of motion, x + dx/omega) that the pendulum must have when a foot lands,
+// so that the robot can continue on this path.
 
 #include <Eigen/Geometry>
 #include <array>

@@ -1,8 +1,8 @@
 #pragma once
-// ZMP preview control, one of the baselines of DTAD: the jerk of the COG follows from its state,
-// the previous ZMP and the coming planned ZMP, and the ZMP follows from the measured state with the
-// same gains. After Kajita and others, "Biped walking pattern generation by using preview control
-// of zero-moment point" (2003). docs/theory_baselines.md, "Preview control".
+// ZMP preview control, one of the baselines of DTAD. The jerk of the COG follows from the state of
+// the COG, the previous ZMP and the coming planned ZMP. The ZMP follows from the measured state
+// with the same gains. After Kajita and others, "Biped walking pattern generation by using preview
+// control of zero-moment point" (2003). docs/theory_baselines.md, "Preview control".
 
 #include <Eigen/Core>
 #include <memory>

@@ -11,8 +11,8 @@
 
 namespace ayumi {
 
-/// A matrix of dof x (samples + 1) [rad]: tau / kp, the angle by which a target must be ahead of
-/// the posture so that the joint does not sag. tau is the torque of the planned motion on its
+/// The angle tau / kp by which a target must be ahead of the posture so that the joint does not
+/// sag: a matrix of dof x (samples + 1) [rad]. tau is the torque of the planned motion on its
 /// planned contacts (the torque that the check judges), limited to the torque that the motor can
 /// give by `limits`. The last column is for the last posture at rest. Zero for joints without a
 /// motor.

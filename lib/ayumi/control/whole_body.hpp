@@ -1,7 +1,7 @@
 #pragma once
-// COG velocity -> whole-body joint rates, (22)(23) and (28)(29), and the reference body that every
-// law moves with them: a posture anchored on a planned sole, whose COG has the reference velocity,
-// and the servo targets that make the robot follow.
+// Joint rates of the whole body for a velocity of the COG, (22)(23) and (28)(29), and the reference
+// body that every law moves with these rates. The reference body is a posture anchored on a planned
+// sole, whose COG has the reference velocity, with the servo targets that make the robot follow.
 
 #include <limits>
 #include <optional>

@@ -103,8 +103,8 @@ struct MotionPart {
 Pattern joined(const RobotModel& model, const MotionPart& first, const MotionPart& second,
                double over, const std::string& table);
 
-/// Two patterns in sequence as a pattern with keys (joined() makes a table of samples): keys,
-/// phases and scenario of the second pattern are moved in place and time; at the join, each track
+/// Two patterns in sequence as a pattern with keys, while joined() makes a table of samples. Keys,
+/// phases and scenario of the second pattern are moved in place and time. At the join, each track
 /// of either pattern gets a key with its value. Throws the same errors as joined(), and
 /// Error(bad_pattern) with the reason if keys cannot express the joined motion. Such reasons are a
 /// table, a correction, VIIP phases, legs that follow keys of joints, a foot that has keys in one

@@ -47,7 +47,7 @@ constexpr double kSameJoint = 2e-4;
 /// that moves by kSameJoint in a millisecond.
 constexpr double kSameRate = 1e3 * kSameJoint;
 /// Time within which such a difference fades after the join [s]. Chosen: the acceleration is then
-/// at most 0.12 rad/s^2; within one tick of 1 ms, it would be 200 rad/s^2, and even a difference of
+/// at most 0.12 rad/s^2. Within one tick of 1 ms, it would be 200 rad/s^2, and even a difference of
 /// 1e-5 rad in the legs would move the ZMP out of the soles.
 constexpr double kFade = 0.1;
 /// A smaller difference is rounding and does not fade. Chosen: in one tick it means 1e-3 rad/s^2.

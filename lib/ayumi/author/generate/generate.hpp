@@ -47,11 +47,12 @@ Pattern walk_pattern(const RobotModel& model, const WalkParameters& parameters);
 /// starting_height() is used [m].
 Pattern stand_pattern(const RobotModel& model, double duration, double cog_height = 0);
 
-/// The COG moves to and fro over both feet; every part starts and ends at rest.
+/// The COG moves from side to side, or forward and back, over both feet; every part starts and ends
+/// at rest.
 struct SwayParameters {
   double side = 0.02;   ///< distance to either side of the middle [m]
   double forward = 0;   ///< distance to the front and back of the middle [m]
-  double period = 2.0;  ///< duration of one movement to and fro [s]
+  double period = 2.0;  ///< duration of one movement there and back [s]
   int cycles = 2;
   double cog_height = 0;  ///< height of the COG; 0 for starting_height() [m]
 };
@@ -105,11 +106,11 @@ struct BowParameters {
 BowParameters bow_defaults(const RobotModel& model);
 Pattern bow_pattern(const RobotModel& model, const BowParameters& parameters);
 
-/// A hand is raised beside the head, goes to and fro, and comes back.
+/// A hand is raised beside the head, waves, and comes back.
 struct WaveParameters {
   Side side = Side::right;
   int cycles = 3;
-  double period = 0.6;    ///< duration of one movement to and fro [s]
+  double period = 0.6;    ///< duration of one movement there and back [s]
   double cog_height = 0;  ///< height of the COG; 0 for starting_height() [m]
 };
 WaveParameters wave_defaults(const RobotModel& model);

@@ -87,11 +87,12 @@ struct CutEnds {
 };
 CutEnds cut_ends(const RobotModel& model, const RawMotion& motion);
 
-/// The motion, changed so that it begins and ends at rest: where it was cut while the robot moved,
-/// it is played slowly at first and reaches its own speed (by minimum jerk) after `seconds`, or
-/// slows down in the same way at its end. Its path over the ground stays, so that no foot slides;
-/// every end takes seconds/2 longer. All other rows keep their bits. ZMP and vertical force are
-/// dropped, because they change. Throws Error(bad_pattern) when the motion is too short.
+/// The motion, changed so that it begins and ends at rest. If its beginning was cut while the robot
+/// moved, it is played slowly at first and reaches its own speed (by minimum jerk) after `seconds`
+/// [s]. If its end was cut, it slows down correspondingly. Its path over the ground stays, so that
+/// no foot slides; every end takes seconds/2 longer. All other rows keep their bits. ZMP and
+/// vertical force are dropped, because they change. Throws Error(bad_pattern) when the motion is
+/// too short.
 RawMotion with_ramps(const RobotModel& model, RawMotion motion, double seconds);
 
 }  // namespace ayumi

@@ -1,6 +1,6 @@
 #pragma once
-// What the search for likely causes knows about the pattern that it examines: what is written,
-// where the feet are planned, and which parts may cause an error.
+// The data of the pattern in which likely causes are searched: what is written, where the feet are
+// planned, and which parts may cause an error.
 
 #include <algorithm>
 #include <iterator>

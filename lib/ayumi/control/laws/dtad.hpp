@@ -135,7 +135,7 @@ class Dtad {
   Side anchor_ = Side::left;
   ReactionFilter filter_;                             // measured ZMP and f_z
   Eigen::Vector2d offset_ = Eigen::Vector2d::Zero();  // accepted offset of the ZMP [m]
-  // Wanted ZMP minus the ZMP that is asked for [m].
+  // // Wanted ZMP minus ref ZMP [m].
   Eigen::Vector2d outside_ = Eigen::Vector2d::Zero();
   bool first_ = true;    // no tick has been computed yet; starts from rest
   bool ended_ = false;   // the plan is at rest after its last sample

@@ -91,8 +91,8 @@ constexpr double kPushFilterTime = 0.010;
 
 // Time constant of the low pass of the measured velocity of the COG, from which VIIP computes ref
 // ZMP, as a multiple of 1/omega: 6 ms on HOAP-1. Chosen: the rms of ZMP - ref ZMP in the walk of
-// HOAP-1 with noise, mean of four seeds, is 10.5 mm without the low pass and 9.2 mm with it; with
-// half of the value 9.3 mm, with twice 9.5 mm.
+// HOAP-1 with noise, as a mean of four seeds, is 10.5 mm without the low pass and 9.2 mm with it.
+// It is 9.3 mm with half of the value, and 9.5 mm with twice.
 constexpr double kVelocityFilterTime = 0.04;
 
 // A measured velocity that differs by more than this from its low pass counts at once, as a
@@ -567,7 +567,7 @@ void Viip::step_state_machine(const Estimate& e) {
                                         : divergent_component(body_.cog(), body_.dcog(), omega_);
   const double single = params_.single_support / omega_, both = params_.double_support / omega_;
   if (stage_ == Stage::weight_shift) {
-    // The DCM has arrived when the ZMP that the regulator asks for is the DCM itself.
+    // The DCM has arrived when the ZMP that the regulator requires is at the DCM itself.
     const double gap = (zmp_[0] - dcm.head<2>()).norm() / params_.pole_ratio;
     if (steps_left_ == 0)
       stage_ = Stage::stand;
