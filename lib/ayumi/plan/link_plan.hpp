@@ -58,9 +58,8 @@ class LinkPlan {
   std::string origin() const;
 
  private:
-  /// A quantity of the keys as a sum of weighted parts: one part is given in the world, one is
-  /// given in the frame of the trunk, and the rest of the weight is for keys that do not give the
-  /// quantity.
+  /// A quantity of the keys as a sum of weighted parts. One part is given in the world, and one in
+  /// the frame of the trunk. The rest of the weight belongs to keys that do not give the quantity.
   struct Blend {
     std::array<Track, 3> world, trunk;
     Track in_world{0.0}, in_trunk{0.0};

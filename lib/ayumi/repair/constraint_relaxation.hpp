@@ -19,9 +19,9 @@ struct Slacks {
   double start = repair_policy::solver::kSlackStart;
 };
 
-/// Adds a variable s >= 0 for each slack: its rows become g >= lower - unit s and g <= upper + unit
-/// s, and price . s is added to the objective (the relaxation is exact if the price exceeds the
-/// multipliers). Rows with two bounds appear twice. The result refers to `nlp`, which must outlive
+/// Adds a variable s >= 0 for each slack. Its rows become g >= lower - unit s and g <= upper + unit
+/// s, and price . s is added to the objective. The relaxation is exact if the price exceeds the
+/// multipliers. Rows with two bounds appear twice. The result refers to `nlp`, which must outlive
 /// it.
 Nlp relaxed(const Nlp& nlp, const Slacks& slacks);
 

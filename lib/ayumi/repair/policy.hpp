@@ -456,8 +456,9 @@ inline constexpr double kKnownBarrier = 1e-8;
 /// Distance from the bounds to which a start is pushed, and the distance for a warm start. Measured
 /// with the barrier. Test: none.
 inline constexpr double kStartPush = 1e-2, kWarmPush = 1e-6;
-/// The distance from the bounds and the barrier of a warm start, as shares of the largest violation
-/// at the start, if this gives larger values than kWarmPush and the barrier of the last program.
+/// Distance from the bounds and barrier of a warm start, as shares of the largest violation at the
+/// start. They are used if they give larger values than kWarmPush and the barrier of the last
+/// program.
 /// Measured: without them, the fourth program of a jump of SR1, which starts with 0.005, reduced
 /// its violation by 2 % in each iteration and took 76 iterations instead of 31. Test: none.
 inline constexpr double kPushShare = 0.1, kBarrierShare = 0.01;

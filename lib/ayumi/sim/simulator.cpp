@@ -1,6 +1,6 @@
-// Control tick k consists of: the measurement (with the forces of the step that ended at k dt), the
-// estimate, the controller, the log, and then the integrator steps with constant targets and the
-// disturbances of each step.
+// Control tick k has these parts in order: the measurement (with the forces of the step that ended
+// at k dt), the estimate, the controller, the log, and the integrator steps. During the integrator
+// steps, the targets are constant, and each step has its own disturbances.
 #include "ayumi/sim/simulator.hpp"
 
 #include <algorithm>
@@ -225,8 +225,8 @@ const ControlOutput& Simulator::with_targets_of_caller(double t, const ControlOu
   return changed_;
 }
 
-/// The output with the targets that the servos receive: the offsets that were estimated at rest are
-/// added, and the encoders read whole counts if the sensors are as the sidecar describes them.
+/// The output with the targets that the servos receive. The offsets that were estimated at rest are
+/// added. If the sensors are as the sidecar describes them, targets are rounded to whole counts.
 const ControlOutput& Simulator::in_counts(const ControlOutput& out) {
   if (encoder_offset_.size() == 0 && !counts_targets_) return out;
   changed_ = out;

@@ -3,9 +3,9 @@
 // same postures have
 //   dq = q_s s',   ddq = q_s s'' + q_ss s'^2,
 // so that inverse dynamics is F = F_0 + F_u u + F_x x with u = s'' and x = s'^2. The rows of all
-// limits of rates and forces, those that a repair keeps (limits/row.hpp), become rows in (u, x):
-// those of accelerations and of the ground wrench's linear parts exactly, the others by their
-// tangents at the timing of the round before.
+// limits of rates and forces that a repair keeps (limits/row.hpp) become rows in (u, x). Rows of
+// accelerations and of the linear parts of the ground wrench become so exactly; the others are
+// replaced by their tangents at the timing of the round before.
 
 #include <string>
 #include <vector>

@@ -269,9 +269,9 @@ std::vector<Foot> feet_without_shapes(const RobotModel& model, const std::vector
 }
 
 // The two lowest end bodies that are beside each other. If a foot stands on more ground than the
-// toe that it carries, the foot is taken and not the toe. There are no feet if an end body without
-// any shape is lower and has as many joints above it as these bodies: then the shapes of the feet
-// are missing, and other bodies are not feet.
+// toe that it carries, the foot is taken and not the toe. An end body without any shape may be
+// lower and have as many joints above it as these bodies. Then the shapes of the feet are missing,
+// and the function finds no feet.
 std::vector<Foot> find_feet(const RobotModel& model, const std::vector<Isometry3d>& poses) {
   std::vector<bool> leaf(model.bodies().size(), true);
   for (const Body& body : model.bodies())
