@@ -14,9 +14,9 @@ namespace ayumi {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
-/// The place where the robot stands: the plane of the supporting soles (with their mean origin and
-/// mean normal; for feet at different heights, a plane between them) and the convex hull of the
-/// soles in this plane.
+/// The place where the robot stands: the plane of the supporting soles, and the convex hull of the
+/// soles in this plane. The plane has the mean origin and the mean normal of the soles; if the feet
+/// are at different heights, it is between them.
 struct SupportPlane {
   Eigen::Isometry3d frame = Eigen::Isometry3d::Identity();  ///< z is the normal
   ConvexPolygon polygon;                                    ///< polygon in its x y plane [m]

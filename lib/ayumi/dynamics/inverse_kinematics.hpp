@@ -19,8 +19,8 @@ struct PostureTarget {
   /// How firmly each sole keeps its place, by Side: 1 for a sole that carries, down to 0 in the
   /// middle of a swing. It only counts where legs have fewer than six joints.
   std::array<double, 2> hold = {1, 1};
-  /// Whether the nearest posture with knees bent the right way is wanted where the target is only
-  /// reached with a knee bent the other way.
+  /// Whether the nearest posture with knees bent in the right direction is wanted if the target is
+  /// only reached with a knee bent in the other direction.
   bool nearest = false;
 };
 
@@ -36,7 +36,7 @@ struct PostureSolution {
   double turned = 0;   ///< angle of that foot from its planned attitude [rad]; 0 when reached
   std::array<double, 2> miss = {0, 0};  ///< distance of each sole from its place, by Side [m]
   int at_limit = -1;  ///< joint of that leg that is at its position limit; -1 if there is none
-  bool knee_flipped = false;  ///< the target is reached, but a leg is bent the other way
+  bool knee_flipped = false;  ///< the target is reached, but a leg is bent in the other direction
 };
 
 /// Distance by which soles may miss their places, and the same number of radians, where legs have

@@ -410,10 +410,10 @@ VectorXd own_share(const RobotModel& model, const JointLoads& loads, int dof) {
   return {};
 }
 
-// The change of the measured angle from the unloaded to the loaded foot. It is the slope of a
-// straight line, fitted by least squares to the difference between the angle and the delayed
-// command as a function of the load share of the leg's own foot, in the rows in which one foot
-// carries the robot. The stiffness is not needed.
+// The change of the measured angle from the unloaded to the loaded foot. Over the rows in which one
+// foot carries the robot, the difference between the angle and the delayed command is taken as a
+// function of the load share of the leg's own foot. The change is the slope of a straight line
+// through it by least squares. The stiffness is not needed.
 void find_sag(const JointRecording& recording, IdentifiedJoint& joint) {
   double x = 0, y = 0, xx = 0, xy = 0, n = 0, least = 1, most = 0;
   for (const Index k : recording.settled) {

@@ -32,10 +32,11 @@ constexpr double kMostLeft = 0.75;
 constexpr double kClearStep = 5;
 
 // After a lost row, all further rows are too early, so the change of the delay lasts. The constants
-// are: the time on both sides of a step in which the delays are compared [s], the shortest such
-// time, the smallest lasting change in rows, and its largest difference from the step, in rows and
-// as a part of the step. Chosen: recorders take some rows up to 0.45 rows late and the next ones in
-// time again, and joints begin to slide within a row, which does not last.
+// are, in this order: the time on both sides of a step in which the delays are compared [s]; the
+// shortest such time [s]; the smallest lasting change [rows]; its largest difference from the step
+// [rows]; and this difference as a part of the step. Chosen: recorders take some rows up to 0.45
+// rows late and the next ones in time again, and joints begin to slide within a row, which does not
+// last.
 constexpr double kLastingTime = 0.75, kLeastLastingTime = 0.3;
 constexpr double kLeastStep = 0.6, kStepMargin = 0.35, kStepShare = 0.25;
 

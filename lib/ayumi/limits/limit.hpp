@@ -180,7 +180,7 @@ struct CheckOptions {
 };
 
 /// The default tolerances, overridden by those that were set. Throws Error(usage) for an unknown
-/// name or a tolerance beyond kLargestNumber. A negative tolerance asks for a margin.
+/// name or a tolerance beyond kLargestNumber. A negative tolerance requires a margin.
 Tolerances tolerances(const CheckOptions& options);
 
 /// The tolerances for a motion of one robot: the default of angular_momentum grows with weight and

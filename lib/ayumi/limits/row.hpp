@@ -92,8 +92,9 @@ using RowRule =
 
 // ---- common properties of rows
 
-/// The prices of violations in one unit, and the amounts that count as a violation of 1. The repair
-/// fills them from its policy.
+/// The prices of violations, and the units in which violations are measured. The price of a
+/// violation is its weight in the cost that the program minimizes. The repair fills in the values
+/// from its policy.
 struct RowPrices {
   double length = 0, angle = 0, share = 0;      ///< units: [m], [rad], 1
   double zmp_margin = 0, landing = 0, dcm = 0;  ///< prices of soft goals

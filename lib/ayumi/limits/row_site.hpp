@@ -1,6 +1,6 @@
 #pragma once
 // The data with which limits place their rows: the motion that is repaired, the samples at which
-// the program evaluates rows, the earlier results that decide which limits are near, and the
+// the program evaluates rows, the earlier results that show which limits are near, and the
 // distances that rows keep from the check's limits.
 
 #include <array>
@@ -135,7 +135,7 @@ struct AngleRange {
 };
 
 /// The range of a row: `kept`, which is inside `allowed` by a distance that keeps the motion
-/// between two points inside, too. If the given value is between the two, the row only asks for
+/// between two points inside, too. If the given value is between the two, the row only requires
 /// this value. Otherwise, a joint that rests at its limit would have to move away from it.
 AngleRange range_with_given(AngleRange kept, const AngleRange& allowed, double given,
                             double tolerance);

@@ -33,8 +33,9 @@ struct SafetyOptions {
   double rest_window = 0;   ///< time over which the speed is a mean [s]; with 0, one row
 };
 
-/// The options for an imported sequence whose rows are kept and which is already complete: it gets
-/// no ramp and no hold, and its speed at both ends is a mean, because its rows are whole counts.
+/// The options for an imported sequence whose rows are kept and which is already complete. It gets
+/// no ramp and no hold. Its speed at both ends is a mean over several rows, because its rows are
+/// whole counts.
 SafetyOptions as_it_is(SafetyOptions options);
 
 /// One way in which a table is unsafe, with its worst row.
@@ -127,9 +128,9 @@ struct TargetRange {
 TargetRange target_range(const Dof& dof, double zero, double margin);
 
 /// The encoder counts of every row, rows x dof in the robot's joint order, with the encoder zeros
-/// of the profile of the options: the nearest whole count, or its neighbour (less than one count
-/// off) if only this neighbour keeps the position limits and count_step_limits(). Joints without an
-/// encoder give 0.
+/// of the profile of the options. A count is the nearest whole number, or its neighbour (less than
+/// one count off) if only this neighbour keeps the position limits and count_step_limits(). Joints
+/// without an encoder give 0.
 Eigen::MatrixXi encoder_counts(const RobotModel& model, const ReferenceTrajectory& table,
                                const SafetyOptions& options);
 

@@ -1,7 +1,7 @@
 // Mirror images: the reflection S = diag(1, -1, 1) takes a point p to S p and an axis of rotation a
-// to -S a. Where the axis of the right joint is sigma (-S a_left), the mirrored angle is sigma
-// times the left one, and motors that are mounted as mirror images turn in opposite directions:
-// their counts have the signs c_right = -sigma c_left.
+// to -S a. If the axis of the right joint is sigma (-S a_left), the mirrored angle is sigma times
+// the left angle. Motors that are mounted as mirror images turn in opposite directions, so their
+// counts have the signs c_right = -sigma c_left.
 
 #include "ayumi/model/diagnose.hpp"
 

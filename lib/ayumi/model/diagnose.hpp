@@ -14,8 +14,8 @@ struct ModelWarning {
   std::string message;  ///< the suspicion and the remedy
 };
 
-/// One warning for each cause, which names all links or joints that have it, or the first few and
-/// their number. Tests for: inertia that is implausible for mass and size (triangle inequality,
+/// One warning for each cause. It names all links or joints that have this cause, or the first few
+/// and their number. Tests for: inertia that is implausible for mass and size (triangle inequality,
 /// placeholders, equal tensors on many links), missing limits, effort or speed that are
 /// placeholders, left-right asymmetry of masses, lengths and limits (partners are found by their
 /// places, not by their names), soles not level at the home posture, a COG outside the soles, sign
