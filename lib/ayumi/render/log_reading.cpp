@@ -216,9 +216,9 @@ double news_at(const SimulationLog& log, double t, const std::vector<double>& ti
 }
 
 /// Takes candidates by weight until there are `count` times. No candidate is nearer to another than
-/// `apart`, except events, which may have any distance. No posture is taken twice. Among candidates
-/// of about the same weight, the function first takes one that stands on other feet than the
-/// nearest time taken, and then the one that is farthest from it.
+/// `apart`, except events, which may have any distance. No posture is taken twice. Of candidates
+/// with about the same weight, those come first in which the robot stands on other feet than at the
+/// nearest time that was taken, and among these the one that is farthest from this time.
 void take(const SimulationLog& log, std::vector<Candidate> candidates, size_t count, double apart,
           std::vector<double>& times) {
   // Ratio of weights that are alike. Chosen: the steps of a walk differ by less.

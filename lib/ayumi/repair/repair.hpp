@@ -28,8 +28,8 @@
 
 namespace ayumi {
 
-/// Random control points: joints and base rotation are within +-size [rad], the base within a tenth
-/// of it [m].
+/// Random control points: joints and base rotation are within +-size [rad], and the base position
+/// is within +-0.1 m per radian of `size`.
 struct RandomStart {
   /// Bound of the random control points [rad]; with 0, the search starts as usual.
   double size = 0;

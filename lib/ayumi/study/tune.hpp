@@ -13,7 +13,7 @@ namespace ayumi {
 /// push.
 struct TuneOptions {
   /// Bounds of the options. Chosen: pushes of more than 5 capture bounds fell the robot with any
-  /// gains, so they do not tell gains apart; 50 rounds take a day.
+  /// gains, so they do not show which gains are better; 50 rounds take a day.
   static constexpr Bounds kLevel = {0.01, 5, "capture bounds"}, kRounds = {1, 50};
 
   std::vector<PushPhase> phases;  ///< phases; if empty, default_push_phases()

@@ -40,7 +40,8 @@ using Model = std::unique_ptr<mjModel, void (*)(mjModel*)>;
 // turns the axes until the last rotation has a cosine of 1 - 1e-12, which is 1.4e-6 rad.
 constexpr double kPrincipalError = 1e-5;
 
-// On an error, MuJoCo ends the program unless its hook does not return. It also prints warnings.
+// The hook for errors of MuJoCo. It must not return, because MuJoCo would then end the program.
+// MuJoCo also prints warnings, which another hook prevents.
 [[noreturn]] void throw_words(const char* words) {
   fail(ErrorCode::bad_model, std::string("MuJoCo: ") + words);
 }
