@@ -35,7 +35,7 @@ struct OverlayOptions {
 struct Label {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< place in the world [m]
   std::string text;
-  double opacity = 1;
+  double opacity = 1;  ///< from 0 to 1
 };
 
 struct Overlay {

@@ -82,7 +82,7 @@ namespace collocation {
 inline constexpr int kPerKnot = 2;
 /// A limit has rows where the motion, or an earlier result, uses more than this share of it; the
 /// check of the result tests the other limits. Chosen: at 0 every limit has its rows. Between half
-/// and twice the value, figures change by less than 5 %. Test: none (PlacedRows.* set it to 0).
+/// and twice the value, figures change by less than 5 %. Test: none (ConstraintRows.* set it to 0).
 inline constexpr double kWatchedShare = 0.7;
 /// The normal force has rows where the motion presses with less than this share of the weight.
 /// Chosen. Between half and twice the value, figures change by less than 5 %. Test: none.
@@ -119,7 +119,7 @@ struct Backoff {
 /// limit by less than this for most faults; the next round corrects the rest. joint_position: no
 /// measured case changes between half and twice the value (constants.md). limit_share,
 /// friction_cone, zmp: between half and twice the value, figures change by less than 5 %. Test:
-/// Repair.NothingNearbyIsCheaper (zmp: it keeps 2.5 mm); PlacedRows.NumbersAreThoseOfTheCheck
+/// Repair.NothingNearbyIsCheaper (zmp: it keeps 2.5 mm); ConstraintRows.NumbersAreThoseOfTheCheck
 /// (shares).
 inline constexpr Backoff kFirstBackoff = {1e-4, 0.998, 0.98, 5e-4};
 /// The distances that every further round adds. Chosen, as above. joint_position, friction_cone: no
@@ -163,7 +163,7 @@ inline constexpr double kLeastNormalForce = 0.1;
 
 /// Size, as a share of the weight, at which the tangential force in the friction row is smoothed,
 /// because its slope has no value at 0. Chosen: small against mu. Between half and twice the value,
-/// figures change by less than 5 %. Test: PlacedRows.NumbersAreThoseOfTheCheck.
+/// figures change by less than 5 %. Test: ConstraintRows.NumbersAreThoseOfTheCheck.
 inline constexpr double kFrictionRounding = 1e-4;
 
 namespace stance {
@@ -493,7 +493,7 @@ inline constexpr double kSlackStart = 0.01;
 inline constexpr double kSlackShare = 0.5;
 /// Steps of the differences by which the load of two feet is derived: of the base [m], of the
 /// ground wrench [N], [N m]. Derived: the cube root of the rounding. Test:
-/// PlacedRows.DerivativesAgainstCentralDifferences.
+/// ConstraintRows.DerivativesAgainstCentralDifferences.
 inline constexpr double kBaseStep = 1e-6, kWrenchStep = 1e-5;
 }  // namespace solver
 
