@@ -14,7 +14,8 @@
 
 namespace ayumi {
 
-/// Throws Error(usage) for an unknown gain or a gain out of range.
+/// Throws Error(usage) for an unknown gain or a gain out of range, and Error(bad_model) if this
+/// gain is in the sidecar.
 void check_controller(const RobotModel& model, const ControllerSpec& spec);
 
 /// The gains by name as the controller uses them; there are none in open loop. Throws the same

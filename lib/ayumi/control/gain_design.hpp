@@ -19,7 +19,7 @@ struct LoopAnalysis {
   /// of the loop are too large for a computation (then the decay is -infinity), or if no error
   /// lasts longer than a tick (infinity).
   std::vector<std::complex<double>> poles;
-  bool stable = false;
+  bool stable = false;   ///< whether no error grows faster than the loop tolerates
   double decay = 0;      ///< decay of the slowest mode; negative if it grows [1/s]
   double frequency = 0;  ///< frequency of that mode [Hz]
 };
@@ -58,8 +58,8 @@ struct GainWishes {
 /// possible.
 DtadParams design_gains(double omega, const GainWishes& wishes, DtadParams params = {});
 
-/// The largest ka with which all loops are stable while the other gains stay as they are; 0 if
-/// there is none.
+/// The largest ka, up to `most`, with which all loops are stable while the other gains stay as they
+/// are; 0 if there is none.
 double largest_stable_ka(const std::vector<LoopModel>& loops, DtadParams params, double most = 20);
 
 /// Gains with which all loops are stable. Only ks and kd (together), damp, ka and tau_z are

@@ -46,7 +46,7 @@ PreviewGains preview_gains(double tick, double effort, double horizon) {
   g.integral = K[0];
   g.state = K.tail<3>();
 
-  // Two poles are near -1; the other two are much faster.
+  // In continuous time, two poles are near -1 (in units of omega); the other two are much faster.
   const std::optional<Eigen::VectorXcd> found = eigenvalues(g.A - g.B * K);
   if (!found)
     fail(ErrorCode::usage, "preview control: no gains can be computed for the effort " +

@@ -31,7 +31,8 @@ struct PreviewGains {
   double R = 0;
 };
 
-/// `tick` and `horizon` are in units of 1/omega.
+/// `tick` and `horizon` are in units of 1/omega. Throws Error(usage) if no gains can be computed
+/// for this effort and tick.
 PreviewGains preview_gains(double tick, double effort, double horizon);
 
 /// The horizontal motion of the COG.

@@ -81,8 +81,10 @@ struct SafeTable {
 };
 
 /// Adds ramp and hold to the motion and judges the result. The ramp has minimum jerk and is so long
-/// that no joint exceeds half its speed limit. Throws Error(bad_pattern) if there are no rows or if
-/// joints are not those of the robot, and Error(bad_model) for an unknown posture or profile.
+/// that no joint exceeds half its speed limit. Throws Error(bad_pattern) if there are no rows, if
+/// the joints are not those of the robot, or if the ramp would last for more than an hour. Throws
+/// Error(usage) for a ramp or a hold outside kRest, and Error(bad_model) for an unknown posture or
+/// profile.
 SafeTable make_safe(const RobotModel& model, ReferenceTrajectory reference,
                     const SafetyOptions& options = {});
 
@@ -134,8 +136,9 @@ TargetRange target_range(const Dof& dof, double zero, double margin);
 Eigen::MatrixXi encoder_counts(const RobotModel& model, const ReferenceTrajectory& table,
                                const SafetyOptions& options);
 
-/// The largest step in a tick, by dof, in counts: the smaller of the motor board's limit and the
-/// profile's speed limit; infinite for joints without an encoder.
+/// The largest step in a tick of `dt` [s], by dof, in whole counts: the smaller one of the motor
+/// board's limit and the profile's speed limit, rounded down. It is infinite for joints without an
+/// encoder.
 Eigen::VectorXd count_step_limits(const RobotModel& model, double dt, const SafetyOptions& options);
 
 /// The largest step in a tick of every joint in [rad] or [m]. For a joint without an encoder, only

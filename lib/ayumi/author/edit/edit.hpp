@@ -74,8 +74,8 @@ struct KeyEdit {
 };
 /// The pattern after the edit. A keyframe that is moved to the time of another keyframe is merged
 /// with it. If both have a value for the same track, the value of the moved keyframe is kept.
-/// Throws Error(usage) for a time without a keyframe or beyond the phases, and the same errors as
-/// mirror_map().
+/// Throws Error(usage) if there is no keyframe at the time, or if the new time is beyond the phases
+/// or inside a VIIP phase, and the same errors as mirror_map().
 Pattern with_key_edited(const RobotModel& model, const Pattern& pattern, const KeyEdit& edit);
 
 /// The pattern and its mirror image alternately, `times` parts in total, so that one step becomes a

@@ -74,8 +74,9 @@ inline bool has_dtad_gains(ControllerKind kind) {
 }
 
 /// The defaults, overridden first by the robot's sidecar and then by the pattern's gains. Throws
-/// Error(usage) that names an unknown gain, for K <= 1 or D <= 0, for q together with k and d, or
-/// for a value out of range.
+/// Error(usage) for an unknown gain or a value out of range, and Error(bad_model) if this gain is
+/// in the sidecar. Also throws Error(usage) for k without d, for K <= 1 or D <= 0, and for q
+/// together with k and d.
 DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec);
 
 /// The gains by their names in files; "k" and "d" are K and D omega as the law uses them.
