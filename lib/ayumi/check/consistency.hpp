@@ -31,7 +31,9 @@ inline const char* verdict_of(const ConsistencyReport& report) {
 /// call it at the same time, for different samples and in any order.
 using SampleObserver = std::function<void(const JudgedSample&, const RobotData&)>;
 
-/// Throws Error(usage) for an unknown tolerance name.
+/// Throws Error(usage) for an unknown tolerance, a tolerance out of range or a time step that is
+/// not above 0, Error(bad_model) for a robot without soles or an unknown profile, and
+/// Error(bad_pattern) for a series without samples.
 ConsistencyReport check_consistency(const RobotModel& model, const CommandSeries& series,
                                     const CheckOptions& options = {},
                                     const SampleObserver& observe = {});

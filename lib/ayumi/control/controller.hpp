@@ -26,7 +26,8 @@ std::vector<std::pair<std::string, double>> gains_in_use(const RobotModel& model
 class Controller {
  public:
   /// The series and the model must outlive the controller and its copies. Throws the same errors as
-  /// check_controller(), and Error(bad_pattern) for a VIIP phase that the law cannot execute.
+  /// check_controller(), and Error(bad_pattern) for a VIIP phase that the law cannot execute, or if
+  /// VIIP is chosen for a pattern without VIIP phases.
   Controller(const RobotModel& model, const ActuatorLimits& limits, const CommandSeries& series,
              const ControllerSpec& spec);
 

@@ -65,7 +65,7 @@ struct Identification {
 
 /// Throws Error(bad_file) "`place`: what" for a recording that cannot be that of this command: a
 /// joint does not follow, counters wrap, all values are zero, or an answer comes too late or too
-/// early.
+/// early. Throws Error(solver) if the fit of a servo fails.
 Identification identify(const RobotModel& model, const RecordedMotion& motion,
                         const IdentifyOptions& options, const std::string& place,
                         const Progress& progress = {});

@@ -82,9 +82,9 @@ struct SafeTable {
 
 /// Adds ramp and hold to the motion and judges the result. The ramp has minimum jerk and is so long
 /// that no joint exceeds half its speed limit. Throws Error(bad_pattern) if there are no rows, if
-/// the joints are not those of the robot, or if the ramp would last for more than an hour. Throws
-/// Error(usage) for a ramp or a hold outside kRest, and Error(bad_model) for an unknown posture or
-/// profile.
+/// the joints are not those of the robot, if an angle is not finite, or if the ramp would last for
+/// more than an hour. Throws Error(usage) for a ramp or a hold outside kRest, and Error(bad_model)
+/// for an unknown posture or profile.
 SafeTable make_safe(const RobotModel& model, ReferenceTrajectory reference,
                     const SafetyOptions& options = {});
 
