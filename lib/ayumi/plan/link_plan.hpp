@@ -1,8 +1,9 @@
 #pragma once
-// Hands, other links and the gaze of a pattern as they move over time, and the joints that follow
-// them. A link without a target is where the keys of its joints put it; between two keys it moves
-// from one place to the other. Of all postures of the limb that put the link there, the joints take
-// the one nearest to their own keys, so that their motion begins and ends at these keys.
+// The motion of hands, other links and the gaze of a pattern, and of the joints that follow their
+// targets. Where a link has no target, the keys of its joints place it; between a key without a
+// target and a key with a target, it moves from one place to the other. Of all postures of the limb
+// that put the link at its place, the joints take the posture nearest to their own keys. So their
+// motion begins and ends at these keys.
 
 #include <array>
 #include <map>

@@ -1,6 +1,6 @@
 #pragma once
-// The camera of a picture. Image x to the right, y down; the centres of the pixels are at half
-// numbers.
+// The camera of a picture. In the image, x is to the right and y is down. The centre of a pixel is
+// half a pixel to the right of and below its corner.
 
 #include <Eigen/Geometry>
 #include <string>

@@ -587,8 +587,8 @@ inline constexpr double kMoved = 1e-6;
 /// No measured case changes between half and twice the value (constants.md). Test:
 /// MotionChange.NamesJointsTimesAndQuantities.
 inline constexpr double kChangeShare = 0.1;
-/// Factor of rounding a control point in a file: nine decimals. Derived: kRounding has six
-/// decimals. Test: none.
+/// Factor of rounding a control point in a file: nine decimals. Derived: this rounding is far below
+/// tighten::kRounding (1e-6). Test: none.
 inline constexpr double kWritten = 1e9;
 }  // namespace report
 

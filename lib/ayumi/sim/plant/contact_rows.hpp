@@ -34,13 +34,13 @@ class ContactRows {
                    Eigen::VectorXd& x);
 
   /// Takes over the impulses of the springs. `change` is the solved change of velocity in the order
-  /// of places. If a contact does not obey its law, returns false and leaves the impulses as
+  /// of `factor`. If a contact does not obey its law, returns false and leaves the impulses as
   /// before.
   bool take_springs(const RobotData& data, const TreeCholesky& factor,
                     const Eigen::VectorXd& change, ContactSolution& solution);
 
   /// Solves the contacts with the factor L of the step's matrix. `x` contains L^-T times the right
-  /// side of the free motion, in the order of places, and receives L^-T J' times the impulses.
+  /// side of the free motion, in the order of `factor`, and receives L^-T J' times the impulses.
   ContactSolution solve(const RobotData& data, const TreeCholesky& factor, Eigen::VectorXd& x);
 
   /// The impulses of the last solve in contact axes [N s].
