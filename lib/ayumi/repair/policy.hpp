@@ -192,16 +192,16 @@ inline constexpr double kCornerShare = 0.6;
 /// With half of the value, the change of the case "early" changes from 0.0359 to 0.00589; with
 /// twice, figures change by less than 5 %. Test: none.
 inline constexpr double kSoftTime = 0.05;
-/// Share of the check's tolerance up to which this deviation of the motion is kept. Chosen. Between
+/// Share of the check's tolerance up to which the deviation of kSoftTime is kept. Chosen. Between
 /// half and twice the value, figures change by less than 5 %. Test: none.
 inline constexpr double kSoftShare = 0.6;
-/// Share of the band that is allowed upwards during this time. Reason: a swing must not continue
-/// between two points. With half of the value, the change of the case "early" changes from 0.0359
-/// to 0.057; with twice, to 0.00761. Test: none.
+/// Share of the band of a standing sole that is allowed upwards during kSoftTime. Reason: a swing
+/// must not continue between two points. With half of the value, the change of the case "early"
+/// changes from 0.0359 to 0.057; with twice, to 0.00761. Test: none.
 inline constexpr double kSoftUpwards = 0.4;
 /// Largest height of the middle of a sole at the first and the last sample of a contact, as a share
-/// of the height up to which a swing may continue. Chosen: a tenth is 6 micrometres, far above the
-/// solver's tolerance. Test: FromScratch.JumpsOfATallRobotNeedFewPrograms.
+/// of the height up to which a swing may continue. Chosen: the remaining tenth is 6 micrometres,
+/// far above the solver's tolerance. Test: FromScratch.JumpsOfATallRobotNeedFewPrograms.
 inline constexpr double kEdgeShare = 0.9;
 /// Half the band in which a locked foot stays on its path [m], [rad]. Derived: the documented
 /// 0.01 mm. Test: Faults.LockedFootKeepsItsWayAndWeightsSteer.
