@@ -8,7 +8,7 @@
 
 namespace ayumi {
 
-/// What a mesh is replaced by: its bounding box, so that no clearance is overestimated, or, for
+/// The shape that replaces a mesh: its bounding box, so that no clearance is overestimated, or, for
 /// contacts, the convex hull of its outer vertices (mesh_hull.hpp).
 enum class MeshAs { box, hull };
 

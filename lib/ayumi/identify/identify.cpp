@@ -160,7 +160,7 @@ bool load_changes_sign(const std::vector<JointRecording>& joints) {
   });
 }
 
-// Whether the recording shows that `a` holds and `b` does not.
+// Whether the recording shows that `a` describes the servo and `b` does not.
 bool fits_better(const ServoFit& a, const ServoFit& b) {
   return 2 * a.independent * elementary::log(b.rms / a.rms) > kLawSeen;
 }
@@ -233,10 +233,11 @@ void take_standing_stiffness(const std::vector<JointRecording>& joints, double l
   type.standing = standing;
 }
 
-// A servo may hold each command until the next one, or move from one to the other. `gradual` says
-// that it moves, because other joints show it. Otherwise, if the recording shows the difference,
-// the better law is taken. If it does not, the delay is uncertain, because it would be half an
-// interval shorter for a servo that holds. The result is then the mean of both delays.
+// A servo may hold each command until the next one, or move gradually from one command to the next.
+// `gradual` says that it moves gradually, because other joints show it. Otherwise, if the recording
+// shows the difference, the better law is taken. If it does not, the delay is uncertain, because it
+// would be half an interval shorter for a servo that holds. The result is then the mean of both
+// delays.
 TypeFit fit_type(std::vector<JointRecording> joints, double longest_delay, double weight,
                  bool gradual) {
   const std::vector<ServoConstants> guess = first_guess(joints, longest_delay);
@@ -383,9 +384,9 @@ class Advice {
   const ServoFit& fit_;
 };
 
-// Rows in which the share of the load on the leg's own foot has been above kLoaded, or below 1
-// minus kLoaded, and stays there: they are in the middle of a stretch of kSettle. The load of a leg
-// then does not depend on how the feet share the weight.
+// Rows in the middle of an interval of the length kSettle in which the share of the load on the
+// leg's own foot stays above kLoaded, or stays below 1 minus kLoaded. The load of a leg then does
+// not depend on how the feet share the weight.
 std::vector<Index> settled_rows(const VectorXd& own, double dt) {
   const auto half = static_cast<Index>(std::ceil(0.5 * kSettle / dt));
   const auto kind = [&](Index k) { return own[k] > kLoaded ? 1 : own[k] < 1 - kLoaded ? -1 : 0; };

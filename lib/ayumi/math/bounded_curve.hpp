@@ -28,7 +28,8 @@ struct RestToRest {
 /// ends.
 class RestToRestSolver {
  public:
-  /// For the arguments of bounded_cog(). What does not depend on z is computed once.
+  /// Takes the arguments of bounded_cog() without z. Everything that does not depend on z is
+  /// computed once.
   RestToRestSolver(Eigen::VectorXd w2, double h);
   RestToRest solve(const Eigen::VectorXd& z) const;
 

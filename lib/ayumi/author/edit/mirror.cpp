@@ -150,9 +150,9 @@ class Mirror {
     return pattern_.posture_files.contains(posture);
   }
 
-  // The postures of the pattern itself get the angles of their images. Those of a posture library
-  // stay, because other patterns include it, too; where one of them is used, the posture that is
-  // its image is named in its place.
+  // The postures of the pattern itself get the angles of their images. The postures of a posture
+  // library stay as they are, because other patterns include the library, too. Where the pattern
+  // uses such a posture, the name of its mirror image is written instead.
   void mirror_postures(Pattern& result) const {
     for (auto& [name, joints] : result.postures)
       if (!is_included(name)) joints = of(joints, "/postures/" + json_pointer_token(name));
@@ -196,8 +196,8 @@ class Mirror {
     return fresh;
   }
 
-  // A posture of the robot that is not symmetric gets its image in the pattern under the same name.
-  // An image that equals the robot's posture again is removed.
+  // If a posture of the robot is not symmetric, the pattern gets its mirror image under the same
+  // name. If this image equals the robot's posture again, it is removed from the pattern.
   void mirror_robot_posture(Pattern& result, const std::string& name) const {
     if (!model_.has_posture(name)) return;
     const VectorXd theta = model_.posture(name);

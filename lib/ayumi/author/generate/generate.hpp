@@ -7,7 +7,7 @@
 namespace ayumi {
 
 struct WalkParameters {
-  int steps = 8;                 ///< steps that move; one more step brings the feet together
+  int steps = 8;                 ///< steps that move the robot; one more brings the feet together
   double stride = 0.03;          ///< forward distance between successive footholds [m]
   double period = 0.55;          ///< duration of one step, single and double support together [s]
   double double_support = 0.18;  ///< double support as a fraction of the period

@@ -1,5 +1,5 @@
-// Gestures. Each part is minimum jerk with rest at both ends. The motion starts and ends with the
-// COG over the middle of the feet, or with a COG that is solved from ZMP keys.
+// Gestures. Each part is a minimum-jerk movement with rest at both ends. The motion starts and ends
+// with the COG over the middle of the feet, or with a COG that is solved from ZMP keys.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -96,10 +96,10 @@ void tell_low_swings(std::vector<int>& labels) {
   }
 }
 
-// Recorded commands of real robots compensate the compliance under load, so that the soles in them
-// never rest relative to each other at one height. At an immediate change of the supporting foot
-// both feet support as long as they do not move apart along the ground and have nearly the same
-// height.
+// Recorded commands of real robots compensate the compliance under load. In such commands, the
+// soles never rest relative to each other at the same height. At an immediate change of the
+// supporting foot both feet support as long as they do not move apart along the ground and have
+// nearly the same height.
 void add_handovers(const Soles& soles, double dt, std::vector<int>& labels) {
   const int n = static_cast<int>(labels.size());
   const int look = std::max(1, static_cast<int>(std::lround(kLook / dt)));
