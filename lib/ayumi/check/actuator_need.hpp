@@ -1,6 +1,6 @@
 #pragma once
-// Which actuators a motion needs: if the actuators of a profile are too weak, what the motion needs
-// and which profiles of the robot are strong enough.
+// Which actuators a motion needs. If the actuators of a profile are too weak, the result says what
+// the motion needs and which profiles of the robot are strong enough.
 
 #include "ayumi/check/consistency.hpp"
 #include "ayumi/motion/keyed_goal.hpp"

@@ -27,8 +27,8 @@ inline const char* verdict_of(const ConsistencyReport& report) {
   return verdict_of(report.consistent);
 }
 
-/// Sees each sample that is judged, with the positions and rates of the bodies. Several threads may
-/// call it at the same time, for different samples and in any order.
+/// Is called for each sample that is judged, with the positions and rates of the bodies. Several
+/// threads may call it at the same time, for different samples and in any order.
 using SampleObserver = std::function<void(const JudgedSample&, const RobotData&)>;
 
 /// Throws Error(usage) for an unknown tolerance, a tolerance out of range or a time step that is

@@ -124,7 +124,7 @@ class Search {
     return chosen();
   }
 
-  /// Leaves out explanations that turned out to be none.
+  /// Removes explanations that turned out to be wrong.
   void drop(const std::vector<Candidate>& candidates) {
     std::erase_if(tried_, [&](const Candidate& tried) {
       return std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& c) {
@@ -490,8 +490,8 @@ std::string before_result(const std::string& instead) {
   return instead + (instead.ends_with(',') ? " " : ", ");
 }
 
-// If no sequence of changes is enough: the first smaller hop that is, or else the one that leaves
-// the fewest errors at the servo's period, and fewer than `left`.
+// Used if no sequence of changes is enough. Returns the first smaller hop that is enough, or else
+// the hop that leaves the fewest errors at the servo's period, if they are fewer than `left`.
 std::optional<Candidate> smaller_hop(Trials trials, const RobotModel& model, const Pattern& pattern,
                                      const TrialOutcome& found, int left) {
   const Hypotheses hypotheses(model, pattern, found);  // the changes refer to it

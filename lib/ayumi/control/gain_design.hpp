@@ -39,7 +39,7 @@ WeakestLoop weakest_loop(const std::vector<LoopModel>& loops, const DtadParams& 
 DtadParams gains_from_poles(std::complex<double> p1, std::complex<double> p2,
                             DtadParams params = {});
 
-/// What the designer asks for, as quantities with a physical meaning instead of gains. A value that
+/// The wishes of the designer, as quantities with a physical meaning instead of gains. A value that
 /// is not set leaves its gain unchanged.
 struct GainWishes {
   /// Poles of the COG under (18)(19) [1/s].

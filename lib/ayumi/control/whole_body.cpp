@@ -51,7 +51,7 @@ constexpr int kLimitPasses = 4;
 constexpr double kCogSpeedLimit = 0.8;
 
 // Acceleration limit of the reference COG, as a multiple of g. Chosen: the force of a leg in its
-// strongest motion, a landing; only an unstable law asks for more. No measured case changes between
+// strongest motion, a landing; only an unstable law requires more. No measured case changes between
 // half and twice the value (constants.md).
 constexpr double kCogAccelerationLimit = 4;
 

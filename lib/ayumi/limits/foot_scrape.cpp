@@ -44,8 +44,9 @@ namespace {
 // (docs/measurements/repair.md). A planned swing of 60 mm (plan/foot_plan) meets the limit with a
 // lift of 1 mm, and a swing of 400 mm with 2.3 mm: at the distance of the slip that is allowed, a
 // longer swing has risen by a smaller share of its lift. No bundled pattern and no default of
-// `ayumi new` has a finding with half of the value, with twice, or with 1 mm. A walk of HOAP-1 with
-// a lift of 0.6 mm has no finding with half; one of 1.5 mm has findings with twice.
+// `ayumi new` has a finding with half of the value, with twice, or with 1 mm. With half of the
+// value, a walk of HOAP-1 with a lift of 0.6 mm has no finding; with twice, a walk with a lift of
+// 1.5 mm has findings.
 constexpr double kScrapeTolerance = 0.0003;
 
 // Whether the other foot carries the robot while this foot swings.

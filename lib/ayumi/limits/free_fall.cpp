@@ -1,5 +1,5 @@
-// In flight nothing pushes, so the COG of the motion falls freely, ddcog = (0, 0, -g), and so does
-// the commanded COG, whose acceleration is the fourth-order second difference
+// In flight no ground force acts, so the COG of the motion falls freely, ddcog = (0, 0, -g), and so
+// does the commanded COG, whose acceleration is the fourth-order second difference
 //   (16 (c_-1 + c_1) - (c_-2 + c_2) - 30 c_0) / (12 dt^2)   (central differences, Taylor).
 // At the beginning and end of a flight, the speed may change, but the position may not: the step of
 // the COG between the two samples there is the mean of the steps before and after it.

@@ -55,8 +55,9 @@ struct SoleRows {
 
 enum class JointQuantity { angle, speed, acceleration, motor_torque };
 
-/// One row: a factor times a quantity of one joint, [rad] or [m], per [s], [s^2], or [N m], [N].
-/// For an angle or a speed, its own rate times the time `lead` is added, as for servo targets.
+/// One row: a factor times a quantity of one joint. Before the factor, its unit is [rad] or [m],
+/// the same per [s] or [s^2], or [N m] or [N]. For an angle or a speed, its own rate times the time
+/// `lead` is added, as for servo targets.
 struct JointRow {
   JointQuantity of = JointQuantity::angle;
   int dof = 0;

@@ -86,7 +86,7 @@ inline ZmpKey::Place opposite(ZmpKey::Place place) {
 struct LinkTarget {
   enum class Frame { world, trunk };
   Frame frame = Frame::world;
-  /// Place of the end; without it, the keys of the joints lead the link again.
+  /// Place of the end; without it, the link follows the keys of its joints again.
   std::optional<Eigen::Vector3d> position;
   std::optional<Eigen::Vector3d> direction;  ///< unit vector from the link's joint to its end
 };

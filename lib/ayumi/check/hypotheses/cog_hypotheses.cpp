@@ -24,8 +24,8 @@ namespace {
 // share of the length of a leg. Chosen: more than half of a sole.
 constexpr double kNotedOffset = 0.25;
 // The COG may sink below its lowest key before a lift-off or after a landing. If it sinks by less
-// than this share of the stoop, the motion counts as what the keys show. Chosen: 3 mm for a stoop
-// of 30 mm.
+// than this share of the stoop, the motion still counts as the one that the keys describe. Chosen:
+// 3 mm for a stoop of 30 mm.
 constexpr double kNotedSink = 0.1;
 // Number of points of a segment at which its lowest value is searched. Chosen: between two points,
 // the value is lower by less than 1e-3 of the stoop.
@@ -43,12 +43,12 @@ constexpr std::array kLowerTakeOffs = {0.02, 0.04, 0.06, 0.08};
 constexpr std::array kSmallerHops = {0.8, 0.65, 0.5, 0.4, 0.3};
 constexpr std::array kSmallerHopsLower = {0.0, 0.04, 0.08, 0.12};
 // Smallest rise from the stoop to the lift-off that is tried, as a share of the length of a leg.
-// Chosen: 5 mm for a leg of 0.25 m; below, the push is a jerk.
+// Chosen: 5 mm for a leg of 0.25 m; with a smaller rise, the push would be a jerk.
 constexpr double kLeastRise = 0.02;
 // A motion begins and ends at rest, with the COG above the ZMP. If the ZMP moves less than this
-// time after the beginning or before the end, the COG has too little time for it. The time
-// constant of the COG is sqrt(z/g), which is 0.16 s for HOAP-1. Derived: what is left of a movement
-// after four time constants is 2 %.
+// time after the beginning or before the end, the COG has too little time to start from rest or to
+// come to rest. The time constant of the COG is sqrt(z/g), which is 0.16 s for HOAP-1. Derived:
+// what is left of a movement after four time constants is 2 %.
 constexpr double kShortRest = 4;
 // Times of rest that are tried, in time constants of the COG. Chosen: up to the time in which the
 // COG comes to rest, and half as much again.

@@ -23,7 +23,8 @@ void swapped_axes(const ExaminedPattern& of, std::vector<Hypothesis>& made);
 void starts(const ExaminedPattern& of, std::vector<Hypothesis>& made);
 /// The left and the right part of one keyframe, exchanged.
 void key_sides(const ExaminedPattern& of, std::vector<Hypothesis>& made);
-/// The one joint of a posture that is not the mirror image of its partner.
+/// A joint of a posture as the mirror image of its partner, if only this pair of joints is not
+/// symmetric.
 void unlike_sides(const ExaminedPattern& of, std::vector<Hypothesis>& made);
 
 }  // namespace ayumi::hypotheses

@@ -380,7 +380,8 @@ Vector2d Dtad::zmp_gap(const Vector2d& ref_zmp, double w, double z) {
 void Dtad::turn_upper_body(double w) {
   const Vector3d moment =
       model_->mass() * kGravity * params_.momentum_gain * Vector3d(-outside_.y(), outside_.x(), 0);
-  // While a foot swings, its leg gives way before the trunk does.
+  // While a foot swings, the hip of its leg does not stop the trunk, because the foot leaves its
+  // path instead (docs/theory.md, "Angular momentum"). So the turn is bounded on both feet only.
   const bool bounded = plan().support == Support::both;
   const bool turns = !moment.isZero(0) || !momentum_.at_rest();
   const TurnRoom room = bounded && turns ? body_.turn_room() : TurnRoom{};

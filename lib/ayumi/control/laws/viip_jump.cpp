@@ -80,9 +80,9 @@ constexpr double kTorqueFadeTime = 0.3;
 // prototype had 20 ms.
 constexpr double kRunOnTime = 0.030;
 
-// Before touchdown the legs give way to the ground, up to this share of the falling speed. They
-// reach this share within the first time, and keep it from the second time before the planned
-// touchdown until as long after it [s]. Measured on 23 jumps of HOAP-1 (z_H 20 to 50 mm, both
+// Before the touchdown, the legs retract with up to this share of the falling speed. They reach the
+// share within the first time [s]. They keep it from the second time [s] before the planned
+// touchdown until the same time after it. Measured on 23 jumps of HOAP-1 (z_H 20 to 50 mm, both
 // releases), as the largest ratio of the peak force to twice the peak force of (27): 0.71 with
 // these values, 0.81 with 0.07 s for the first time. With 0.02 s for the second time, or a share of
 // 0.95, the legs are stretched too far before the touchdown, and in the highest jumps the ratio is
@@ -626,7 +626,7 @@ void ViipJump::fly(const Estimate& e, ControlOutput& out) {
   loaded_ = load > kTouchdownShare ? loaded_ + dt_ : 0;
   const bool touched =
       elapsed_ > kTouchdownBlindTime && (loaded_ >= kTouchdownTime || load > kHardTouchdownShare);
-  if (touched) dcog_.z() = std::min(speed_before_, 0.0);  // (27) asks for the measured speed
+  if (touched) dcog_.z() = std::min(speed_before_, 0.0);  // (27) uses the measured speed
   if (touched || elapsed_ > flight_.duration + kLateTouchdown) touch_down(e);
 }
 
