@@ -86,9 +86,9 @@ std::string hoap_csv(const RobotModel& model, const ReferenceTrajectory& table,
 std::string hoap_csv(const RobotModel& model, const ReferenceTrajectory& table,
                      const SafetyOptions& options, const SequenceLayout& layout);
 
-/// An imported sequence as it was, with a ramp before it and a hold after it in the form of the
-/// sequence. The ramp has the rows of `table` before row `first`. The hold has the rows from
-/// `first` + `count` on.
+/// An imported sequence as it was, with a ramp and a hold around it in the form of the sequence.
+/// The rows of `table` before row `first` come before the sequence, and the rows from `first` +
+/// `count` on come after it.
 std::string hoap_csv_around(const RobotModel& model, const ReferenceTrajectory& table, size_t first,
                             size_t count, const SafetyOptions& options, const HoapFile& sequence,
                             const std::string& bytes);
