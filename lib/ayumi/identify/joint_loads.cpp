@@ -26,9 +26,9 @@ namespace {
 // torque of a leg by less than 0.05 N m.
 constexpr double kLoadCutoff = 50;
 
-// Frequency below which the difference between a joint and its delayed command changes [Hz].
-// Chosen: weight and friction change it more slowly, and the noise of an encoder beyond this
-// frequency does not become a torque.
+// Cut-off frequency of the low pass of the difference between a joint and its delayed command [Hz].
+// Chosen: weight and friction change this difference more slowly, and the noise of an encoder
+// beyond this frequency does not become a torque.
 constexpr double kSagCutoff = 15;
 
 // The load of a standing leg is not known well if its quick part exceeds this share of the largest

@@ -34,9 +34,9 @@ constexpr double kClearStep = 5;
 // After a lost row, all further rows are too early, so the change of the delay lasts. The constants
 // are, in this order: the time on both sides of a step in which the delays are compared [s]; the
 // shortest such time [s]; the smallest lasting change [rows]; its largest difference from the step
-// [rows]; and this difference as a part of the step. Chosen: recorders take some rows up to 0.45
-// rows late and the next ones in time again, and joints begin to slide within a row, which does not
-// last.
+// [rows]; and this difference as a part of the step. Chosen: recorders record some rows up to 0.45
+// rows late and the next rows on time again, and joints may begin to slide within a row. Neither
+// change lasts.
 constexpr double kLastingTime = 0.75, kLeastLastingTime = 0.3;
 constexpr double kLeastStep = 0.6, kStepMargin = 0.35, kStepShare = 0.25;
 

@@ -6,8 +6,9 @@
 //   height = n . (x - v),   way = |x - v| along the ground.
 // The height over the lower one of the two places is judged, because the edge of a step between
 // them is not known. A stretch is a series of samples in which the corner is lower than the
-// tolerance, so that it is on the ground like a corner of a standing sole. In it, the corner may be
-// as far from where it is at rest as a standing sole may slip. It is at rest
+// tolerance, so that it is on the ground like a corner of a standing sole. In a stretch, the
+// distance of the corner from its place of rest may be at most the slip that a standing sole may
+// have. The corner is at rest
 //   - in the place of lift-off, if the stretch begins with the swing,
 //   - in the place of landing, if the stretch ends with the swing,
 //   - where it came down, if the stretch does neither.

@@ -173,6 +173,7 @@ using Tolerances = ByFindingKind<double>;
 /// Options of the check. Patterns and the command line may set single tolerances.
 struct CheckOptions {
   std::string profile;  ///< actuator profile; "" for the default of the robot
+  /// Friction coefficient of the ground.
   double friction = 0.8;
   std::map<std::string, double> tolerances;  ///< tolerances by the name of the kind
   int threads = 0;      ///< number of threads; 0 for all cores; results do not depend on it

@@ -82,11 +82,11 @@ struct Sole {
 
 class RobotModel {
  public:
-  /// Throws Error(bad_model), which names the link or joint and the remedy, for: no root or several
-  /// roots, a loop, an unknown link, two links of one name, a moving body without mass, a negative
-  /// mass, an inertia that no body can have, numbers that are not finite, an axis of length zero,
-  /// limits in the wrong order, an unknown mimic, sole or posture joint, and a posture outside the
-  /// limits.
+  /// Throws Error(bad_model), which names the link or joint and the remedy, for:
+  ///   - no root or several roots, a loop, an unknown link, or two links of one name;
+  ///   - a moving body without mass, a negative mass, or an inertia that no body can have;
+  ///   - numbers that are not finite, an axis of length zero, or limits in the wrong order;
+  ///   - an unknown mimic, sole or posture joint, or a posture outside the limits.
   explicit RobotModel(RobotDescription description);
 
   const RobotDescription& description() const { return description_; }
