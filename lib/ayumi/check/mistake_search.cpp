@@ -531,7 +531,8 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
   for (int round = 0; round < kRounds && !found.good() && !trials.ended(); ++round) {
     const int left_rounds = kRounds - round;
     std::optional<Search> search(std::in_place, trials, model, current, found, left_rounds);
-    // The changes of these candidates refer to the search.
+    // The functions that make the changes of these candidates refer to `search`, which must live
+    // longer.
     std::vector<Candidate> possible;
     while (possible.empty()) {
       std::vector<Candidate> best = search->best();

@@ -15,7 +15,7 @@
 
 namespace ayumi {
 
-/// One swing of a pattern; its phases are numbers of samples.
+/// One swing of a pattern. Its times are counted in samples of the series.
 struct PlannedSwing {
   double lift = 0, land = 0;  ///< beginning and end of the single support
   double rest = 0;            ///< end of the double support after it
@@ -25,7 +25,8 @@ struct PlannedSwing {
 /// The swings that end in a double support, in time order.
 std::vector<PlannedSwing> swings_of(const CommandSeries& series);
 
-/// The command at a phase between two samples. After the end, it is the last posture at rest.
+/// The command at `phase` [samples], which may be between two samples. After the end, it is the
+/// last posture at rest.
 CommandSample command_between(const CommandSeries& series, double phase);
 void command_between(const CommandSeries& series, double phase, CommandSample& command);
 

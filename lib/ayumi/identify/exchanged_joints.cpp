@@ -54,8 +54,8 @@ double rms(const VectorXd& values) {
 
 VectorXd without_mean(const VectorXd& values) { return values.array() - values.mean(); }
 
-// The distance of an angle from its own command, whatever its zero and its sign are: a wrong sign
-// is another mistake.
+// The distance of an angle from its own command. A wrong zero and a wrong sign do not count,
+// because they are other mistakes.
 double own_distance(const Rows& rows, Index j) {
   const VectorXd m = without_mean(rows.measured.col(j)), c = without_mean(rows.command.col(j));
   return std::min(rms(m - c), rms(m + c));

@@ -61,8 +61,8 @@ constexpr double kLeastCompliance = 1e-6;
 
 // Largest possible lag of a servo: a time [s], and a multiple of the lag that the robot's file
 // states; the larger of the two is used. Chosen: soft servos of small humanoids have up to 20 ms. A
-// recording with a larger lag is shifted, and it is refused; with half of the value, soft servos
-// would be refused.
+// recording with a larger lag counts as shifted in time and is refused. With half of the value,
+// recordings of soft servos would be refused.
 constexpr double kSlowServo = 0.03, kSlowerThanStated = 2;
 
 // Time by which the lag must exceed that of the robot's file before the recording counts as

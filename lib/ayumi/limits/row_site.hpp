@@ -66,7 +66,7 @@ struct RowSettings {
 
   // Values for single limits, which are named by their files.
   struct {
-    double least = 0, safe = 0;  ///< margins inside the support [m]
+    double least = 0, safe = 0;  ///< smallest margin inside the support, and safe margin [m]
     /// Margin that is wanted near a margin below `least`; not less than `least` [m].
     double mended = 0;
     double safe_around = 0;  ///< time around a margin below `least` in which `mended` is wanted [s]

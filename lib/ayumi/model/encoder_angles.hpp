@@ -10,8 +10,9 @@
 
 namespace ayumi {
 
-/// The side of the border on which angles were measured: readings of the encoders of this unit, or
-/// angles from instruments at the joints, which do not share the zeros of the encoders.
+/// The side of the border on which angles were measured. `encoder`: readings of the encoders of
+/// this unit. `joint`: angles from instruments at the joints, which the zeros of the encoders do
+/// not affect.
 enum class MeasuredAt { encoder, joint };
 
 /// "encoder" or "joint"; throws Error(usage) for another name.

@@ -42,11 +42,11 @@ struct RawMotion {
   ContactThresholds contact = {};  ///< thresholds of the detection
 };
 
-/// The supporting feet in each row. Feet on the ground do not move relative to each other: both
-/// support the robot while they move relative to each other at less than 2 cm/s and their heights
-/// differ by less than 3 mm. Otherwise, the foot that is lower as seen from the other foot does. If
-/// the supporting foot changes without a phase in which both are at rest, both support the robot as
-/// long as they do not move apart along the ground (4 cm/s) or by more than 1 cm in height. In a
+/// The supporting feet in each row. Feet on the ground do not move relative to each other. Both
+/// feet support the robot while their relative speed is below 2 cm/s and their heights differ by
+/// less than 3 mm. Otherwise, only the foot that is lower as seen from the other foot supports it.
+/// If the supporting foot changes without a phase in which both are at rest, both support the robot
+/// as long as they do not move apart along the ground (4 cm/s) or by more than 1 cm in height. In a
 /// motion with a base, a sole supports the robot if it is at rest and at most 3 mm above the lowest
 /// height that any sole has. In rows without such a sole, the thresholds of the motion decide by
 /// height, speed and load; rows where they find no sole either are flight. Intervals shorter than

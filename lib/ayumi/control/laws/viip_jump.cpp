@@ -51,7 +51,7 @@ constexpr double kStoopTime = 5;
 // No measured case changes between half and twice the value (constants.md).
 constexpr double kStoopReached = 0.01;
 
-// Lean of the trunk when stooped, times z_d / ref z_G [rad]. Derivation: docs/theory_flight.md,
+// Lean of the trunk in the stoop, per z_d / ref z_G [rad]. Derivation: docs/theory_flight.md,
 // "Lean". Measured with version 0.1: with 0, jumps with the release `spring` reach an apex that is
 // 8 to 10 % too low.
 constexpr double kStoopLean = 1.2;
