@@ -21,7 +21,7 @@ struct ConsistencyReport {
   std::string profile;      ///< the actuator profile by which the motion was judged
 };
 
-/// "consistent" or "inconsistent", in answers, files and pages.
+/// "consistent" or "inconsistent", in outputs, files and pages.
 const char* verdict_of(bool consistent);
 inline const char* verdict_of(const ConsistencyReport& report) {
   return verdict_of(report.consistent);

@@ -1,7 +1,7 @@
 #pragma once
 // If a push is too large for the present support, moves the coming footholds of a pattern and
-// speeds up its clock, so that the next step answers the rest of the push. docs/theory.md, "Moving
-// footholds".
+// speeds up its clock, so that the next step compensates the rest of the push. docs/theory.md,
+// "Moving footholds".
 
 #include <optional>
 #include <vector>
@@ -35,12 +35,13 @@ struct FootholdParams {
   /// error that the footholds remove; 0 switches this off.
   double share = 0;
   double time_scale_limit = 2.5;  ///< fastest clock of the pattern, at least 1
-  /// Footholds and clock are chosen by the program of control/step_program, which answers every
-  /// error. Without it, a search answers only the part of an error that the supports cannot remove.
+  /// Footholds and clock are chosen by the program of control/step_program, which corrects every
+  /// error. Without it, a search corrects only the part of an error that the supports cannot
+  /// remove.
   std::optional<StepWeights> program = {};
 };
 
-/// The plan of a pattern whose footholds move. As long as the supports can answer all errors, the
+/// The plan of a pattern whose footholds move. As long as the supports can correct all errors, the
 /// plan equals the pattern to the last bit. After that, the coming footholds, ZMP and COG are
 /// shifted over the ground.
 class FootholdShift {

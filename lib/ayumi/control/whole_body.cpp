@@ -72,8 +72,8 @@ constexpr double kInsideSole = 0.15;
 // Time constant of the low pass of the tilt that the ankles compensate [s]. Chosen: stiff servos
 // would otherwise follow the noise of the IMU. In the walk of HOAP-1 with its sensors' noise, the
 // rms of ZMP - ref ZMP is 20.6 mm without the low pass, 8.4 mm with 0.01 s, 6.9 mm with 0.05 s and
-// 7.0 mm with 0.1 s. The answer to late sensors does not change. With 0.05 s the ankles yield less
-// to a plate under half a sole than with 0.1 s.
+// 7.0 mm with 0.1 s. The response to late sensors does not change. With 0.05 s the ankles yield
+// less to a plate under half a sole than with 0.1 s.
 constexpr double kTiltFilter = 0.1;
 
 // Rate at which the joints return to their command when the robot is off the ground [1/s]. Chosen:

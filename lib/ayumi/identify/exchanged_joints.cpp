@@ -24,8 +24,8 @@ constexpr double kFarBetter = 0.25;
 // Time between the compared rows [s]. Chosen: joints of walks move for tenths of a second.
 constexpr double kExchangeStep = 0.01;
 
-// Step between the delays of an answer that are tried [s]. Chosen: the answer of a servo is then at
-// most 4 ms from one of them, in which a joint of a walk (2 rad/s) moves by half a degree.
+// Step between the delays of a response that are tried [s]. Chosen: the delay of a servo is then at
+// most 4 ms from one of them. In this time, a joint of a walk (2 rad/s) moves by half a degree.
 constexpr double kAnswerStep = 0.008;
 
 // Both tables at the same times; columns are joints.

@@ -85,8 +85,8 @@ constexpr double kFlankTorque = 0.05;
 // shows which of them holds. Chosen: five standard deviations, squared.
 constexpr double kLawSeen = 25;
 
-// Share of the residual of a law below which the answers of two laws count as equal. Chosen: the
-// steps in which an answer is integrated change it by up to a tenth. Synthetic servos for which an
+// Share of the residual of a law below which the responses of two laws count as equal. Chosen: the
+// steps in which a response is integrated change it by up to a tenth. Synthetic servos for which an
 // earlier version chose the wrong law had 0.005 to 0.12, others 0.25 or more.
 constexpr double kSameAnswer = 0.15;
 
@@ -165,8 +165,8 @@ bool fits_better(const ServoFit& a, const ServoFit& b) {
   return 2 * a.independent * elementary::log(b.rms / a.rms) > kLawSeen;
 }
 
-// The same for two laws of the servo's behaviour between two commands: their answers must differ by
-// clearly more than that part of the residual of the better law that is not noise.
+// The same for two laws of the servo's behaviour between two commands: their responses must differ
+// by clearly more than that part of the residual of the better law that is not noise.
 bool shows_law(const ServoFit& a, const ServoFit& b) {
   return fits_better(a, b) &&
          rms_between(a, b) > std::max(kBeyondErrors * a.model_error, kSameAnswer * a.rms);

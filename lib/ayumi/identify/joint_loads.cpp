@@ -155,9 +155,9 @@ class LoadsOnFeet {
   std::vector<Support> supports_;
 };
 
-// The motion of a joint that has a command: the command with the mean delay of the answer, plus the
-// smoothed difference of the answer from it. In this way, two differentiations do not amplify the
-// noise of an encoder much.
+// The motion of a joint that has a command: the command with the mean delay of the response, plus
+// the smoothed difference of the response from it. In this way, two differentiations do not amplify
+// the noise of an encoder much.
 VectorXd smooth_motion(const RecordedMotion& motion, Index dof) {
   const AngleTable &measured = motion.measured, &command = motion.command;
   const VectorXd answer = measured.theta.col(dof);

@@ -47,8 +47,8 @@ constexpr size_t kMostSteps = 60;
 // rounded. Derived: rounding alone has a standard deviation of 0.29 steps.
 constexpr double kLeastNoise = 0.29, kLeastNoiseAngle = 1e-7;
 
-// Length of the windows in which the delay of the answer is followed [s], and a change of the delay
-// that only missing or repeated rows explain [s]. Chosen: a motion has all its rates within a
+// Length of the windows in which the delay of the response is estimated [s], and a change of the
+// delay that only missing or repeated rows explain [s]. Chosen: a motion has all its rates within a
 // window, and the change is far beyond the effect of friction and load on the mean of several
 // windows.
 constexpr double kDelayWindow = 1.5, kDelayJump = 0.003;
@@ -154,8 +154,8 @@ RowStep row_step(const std::vector<FollowingJoint>& joints, Index k,
 
 // A constant, a slope and a delay of each joint are fitted to the differences around row k. Returns
 // the part of the residual that is left if `lost` rows are lost as well; the noise is subtracted
-// from both residuals. For the answer of servos to a sudden move, most of the residual is left.
-// Such an answer looks like a step for a few rows, and it looks the same for all joints that make
+// from both residuals. For the response of servos to a sudden move, most of the residual is left.
+// Such a response looks like a step for a few rows, and it looks the same for all joints that make
 // the move.
 double left_around(const std::vector<FollowingJoint>& joints, Index k, double lost) {
   double without = 0, with = 0;

@@ -10,8 +10,8 @@
 // The term with ka is the part of (14) that the reference lacks. By (14), w2 (x - refZ) is the
 // wanted acceleration, and the ground gives w2 (x - zhat). The term is zero if the ZMP is where it
 // should be. This is the short-term absorption. The term with damp damps the rocking of the robot
-// on soles and servos that yield. This rocking is excited by the term with ka, because it answers
-// late (docs/theory.md, "Late sensors").
+// on soles and servos that yield. The term with ka excites this rocking, because it responds late
+// (docs/theory.md, "Late sensors").
 #include "ayumi/control/laws/dtad.hpp"
 
 #include <algorithm>
@@ -297,7 +297,7 @@ CogReference Dtad::cog_reference(const Estimate& estimate, LawTerms& terms) {
   const ConvexPolygon& polygon =
       region_.update(*model_, command.feet, command.support, p.margin * z);
   // A planned ZMP outside the support, as in imported motions, is not an error that the law should
-  // answer.
+  // correct.
   const Vector2d planned =
       polygon.empty() ? Vector2d(command.zmp.head<2>()) : polygon.project(command.zmp.head<2>());
   const Vector2d wanted =

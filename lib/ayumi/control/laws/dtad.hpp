@@ -41,8 +41,8 @@ struct DtadParams {
   /// [momentum] moment that trunk and arms provide, as a multiple of the moment that corresponds to
   /// a wanted ZMP outside the support; 0 switches this off.
   double momentum_gain = 6;
-  /// [step] share of the DCM error beyond the supports' reach that the footholds answer; 0 switches
-  /// this off.
+  /// [step] share of the DCM error beyond the supports' reach that the footholds correct; 0
+  /// switches this off.
   double step_share = 0;
   double time_scale_limit = 2.5;  ///< [hurry] fastest clock of a pattern with moving footholds
   bool literal = false;  ///< (14) integrated as printed, with D's sign corrected: a demonstration

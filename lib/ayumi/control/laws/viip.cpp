@@ -38,8 +38,8 @@ using Eigen::Vector3d;
 namespace {
 
 // If less than this time is left to a landing, the regulator no longer aims at it [s]. Chosen: the
-// ZMP that it requires grows with 1 / (1 - E); later, only the foothold can still answer. Half or
-// twice the value changes measured cases by 5 % or more (constants.md).
+// ZMP that it requires grows with 1 / (1 - E); later, only the foothold can still correct an error.
+// Half or twice the value changes measured cases by 5 % or more (constants.md).
 constexpr double kLeastTimeToLanding = 0.06;
 
 // The weight shift ends when the DCM is within this distance of the place where the first step
@@ -365,7 +365,7 @@ Viip::WantedZmp Viip::regulate(const Vector2d& dcm, int state) const {
               stands};
     }
     case Stage::single_support:
-      // Shortly before the landing only the foothold can still answer.
+      // Shortly before the landing, only the foothold can still correct an error.
       if (time_to_landing() < kLeastTimeToLanding) return {zmp_[state], 0};
       return {arriving(anchor_, time_to_landing()), growth(time_to_landing())};
     case Stage::double_support: {
