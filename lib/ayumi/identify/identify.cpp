@@ -82,7 +82,7 @@ constexpr double kCogError = 0.002;
 constexpr double kFlankTorque = 0.05;
 
 // Twice the logarithm of the likelihood ratio of two laws of a servo, above which the recording
-// shows which of them holds. Chosen: five standard deviations, squared.
+// shows which of them is the law of the servo. Chosen: five standard deviations, squared.
 constexpr double kLawSeen = 25;
 
 // Share of the residual of a law below which the responses of two laws count as equal. Chosen: the

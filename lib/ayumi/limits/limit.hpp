@@ -96,7 +96,8 @@ struct FindingSpec {
   const char* unit = "";
   double tolerance = 0;      ///< default tolerance; patterns and `--tolerance` may set another one
   const char* meaning = "";  ///< meaning in the text of `check --tolerances`
-  /// The smallest default for a motion of one robot; null if the default holds for all motions.
+  /// The smallest default for a motion of one robot; null if the default is the same for all
+  /// motions.
   double (*least_tolerance)(const RobotModel&, const CommandSeries&) = nullptr;
   SummaryFigure figure = {};
   ActuatorNeedWords actuator = {};

@@ -23,8 +23,8 @@ namespace {
 /// the generated walk (60 mm in 0.45 s). With half of the value, contact 3 of the imported walk
 /// begins at 1.553 s instead of 1.543 s; with twice, at 1.527 s.
 constexpr double kRestSpeed = 0.020;
-/// A rotation counts as the speed of a point at this distance [m]. Derived: half the length of
-/// HOAP-1's sole (98 mm).
+/// Lever with which a rotation is added to a displacement: it counts as the movement of a point at
+/// this distance [m]. Derived: half the length of HOAP-1's sole (98 mm).
 constexpr double kLever = 0.05;
 /// Largest difference in height of standing feet [m]. Chosen: a fifth of the lift of the generated
 /// walk (15 mm). No measured case changes between half and twice the value (constants.md).
