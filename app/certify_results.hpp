@@ -13,9 +13,9 @@ namespace ayumi::app {
 /// The cases of a file by their numbers. A file may have few cases with large numbers.
 using FileCases = std::map<size_t, CaseResult>;
 
-/// Those of the cases 0, 1, ..., count - 1 that are known.
+/// The known results of the cases 0, 1, ..., count - 1.
 KnownResults first_cases(const FileCases& cases, long count);
-/// Adds the known results, also in place of those that the file has.
+/// Adds the known results. They replace results of the same cases.
 void add_cases(const KnownResults& results, FileCases& cases);
 
 /// The finished cases of a study. `study` describes the task; a study can only be continued with

@@ -22,8 +22,8 @@ bool has_timer = false;
 volatile std::sig_atomic_t is_stop_expected = 0;
 
 void on_signal(int signal) {
-  // The shell and the system both send SIGHUP when a terminal is closed, so the second one is no
-  // wish to end at once. The second one of the others is.
+  // The shell and the system both send SIGHUP when a terminal is closed, so a second SIGHUP is no
+  // wish to end at once. A second one of any other signal is.
   const bool is_second = stop_signal == signal && signal != SIGHUP;
   stop_signal = signal;
   if (signal == SIGHUP) std::signal(signal, SIG_IGN);

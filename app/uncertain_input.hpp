@@ -1,6 +1,7 @@
 #pragma once
-// The uncertainty of a pattern on the command line: that of --study, or else that of the pattern,
-// or else the default one of its robot, or else the one that is assumed for any robot.
+// The uncertainty of a pattern on the command line. It is the first of these that exists: that of
+// --study, that of the pattern, the default one of its robot, the one that is assumed for any
+// robot.
 
 #include <string>
 

@@ -370,7 +370,7 @@ void certify_pattern(Context& context, CertifyCommand& options) {
     json["comparison"] = compare_with(context, options, study, input, task, law, results);
   if (options.rare) json["rare_failures"] = rare_failures(context, options, task);
   if (!options.map.empty()) {
-    // The table has all known runs, as the picture has: with --all there are more than the test
+    // The table has all known runs, like the picture. With --all, these are more than the test
     // needs.
     const auto is_known = [](const auto& r) { return r.has_value(); };
     const auto has_failed = [](const auto& r) { return r && r->failed(); };

@@ -374,7 +374,8 @@ void watch(Context& context, const CheckCommand& options) {
   Stamps seen;
   std::optional<int> errors;
   while (true) {
-    // The files are named by files that may change while they are read: a stamp from before counts.
+    // The files contain the names of further files, and they may change while they are read. So the
+    // stamps from before the reading are kept.
     std::vector<fs::path> known = {file};
     for (const auto& entry : seen) known.push_back(entry.first);
     const Stamps before = stamps_of(known);

@@ -103,7 +103,7 @@ Edited in_own_text(const EditCommand& options, const Given& given, const Pattern
       result.lost.push_back(mark + " of " + from.task.pattern.file);
   };
   add_lost(given, result.text.empty() ? pattern_text(edited) : result.text);
-  // The text of a motion that follows itself is there once.
+  // Two patterns with the same text lose the same, so it is listed once.
   std::set<std::string> told = {given.text};
   for (const Given& other : others)
     if (told.insert(other.text).second) add_lost(other, "{}");

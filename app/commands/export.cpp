@@ -342,8 +342,8 @@ std::string text_of_table(const fs::path& table) {
   return read_file(table);
 }
 
-// Throws Error(bad_file) unless a table in a run folder that has the name of the run's own one is
-// the table that the log gives. Other files in such a folder are the user's.
+// If a table in a run folder has the name of the run's own table, it must be the table that the log
+// gives; otherwise Error(bad_file) is thrown. Other files in such a folder belong to the user.
 void require_table_of_run(const ReferenceTrajectory& table, ExportOptions options,
                           const Context& context) {
   const fs::path path = options.input;

@@ -120,7 +120,7 @@ std::string smooth_words(const RepairResult& result) {
          "\n";
 }
 
-// What the motion that is made from scratch begins with, and which keys of the COG it misses.
+// Says from which start a motion was made from scratch, and which keys of the COG it misses.
 std::string start_words(const Pattern& pattern, const GeneratedMotion& made) {
   std::string out = "  the motion was made from postures with the planned feet and ";
   out += made.least_sway ? "a COG that sways as little as the supports allow"
@@ -447,8 +447,7 @@ void repair_pattern(Context& context, RepairCommand options) {
   context.exit_code = exit_code_of(result);
   const bool written = context.exit_code == 0 || options.repair.keep_partial;
   if (written) write_repaired(context, options, input, result);
-  // A motion that is made from scratch only has its plan in the pattern, so the pattern cannot be
-  // sampled.
+  // With --from-scratch, the pattern contains only the plan of the motion, so it cannot be sampled.
   std::vector<Mistake> mistakes;
   if (context.exit_code == 4)
     mistakes = options.from_scratch ? impossible_values(input.robot, input.pattern)

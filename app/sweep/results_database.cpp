@@ -627,8 +627,8 @@ long ResultsDatabase::merge(const fs::path& other) {
   for (const std::string& name : names)
     unequal.push_back("a." + sql_name(name) + " IS NOT b." + sql_name(name));
   Statement different(database_,
-                      // CROSS JOIN makes SQLite go through the rows of the other file, which may be
-                      // far fewer.
+                      // CROSS JOIN makes SQLite go through the rows of the other file, of which
+                      // there may be far fewer.
                       "SELECT a.\"case\" FROM theirs.cases b CROSS JOIN main.cases a ON "
                       "a.\"case\" = b.\"case\" WHERE a.error IS NULL AND b.error IS "
                       "NULL AND (" +

@@ -1,5 +1,5 @@
 #pragma once
-// The seal of the rows of a sweep. It recognizes rows that were edited, and costs no room in them.
+// The seal of the rows of a sweep. It recognizes rows that were edited, and takes no space in them.
 
 #include <array>
 #include <cstdint>

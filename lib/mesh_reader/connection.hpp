@@ -11,7 +11,7 @@ namespace ayumi::mesh_reader {
 
 /// Sends a message. Ends the process if Ayumi has closed the connection.
 void send(MeshMessage kind, std::string_view bytes);
-/// Sends the number that a hello has.
+/// Sends the message `hello` with the version of the messages.
 void send_hello();
 /// Returns the bytes of the next message. Ends the process with exit code 0 if there is no message,
 /// and with exit code 1 if the message is of another kind.

@@ -21,7 +21,7 @@ constexpr float kCrease = 0.766f;
 // fine mesh has about six; the tip of a larger fan keeps the normals of its facets.
 constexpr std::uint32_t kMostAround = 64;
 
-// -0 becomes 0.
+// The bits of a number, where -0 has the bits of 0.
 std::uint32_t bits(float number) { return std::bit_cast<std::uint32_t>(number + 0.0f); }
 
 /// Gives each triangle three vertices of its own.

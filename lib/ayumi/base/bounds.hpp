@@ -1,6 +1,6 @@
 #pragma once
-// Bounds of what a caller may choose. They stand beside the option that they bound, so that the
-// command line, Python and C++ have the same ones.
+// Bounds of what a caller may choose. They are declared beside the option that they limit, so that
+// the command line, Python and C++ use the same bounds.
 
 #include <string>
 
@@ -16,7 +16,7 @@ struct Bounds {
 };
 
 /// Throws Error(usage) such as "the ramp is nan s; it must be from 0 to 60 s" unless `value` is
-/// within the bounds. NaN is not.
+/// within the bounds. NaN is outside.
 inline void require_within(const std::string& quantity, double value, const Bounds& bounds) {
   if (value >= bounds.least && value <= bounds.most) return;
   const std::string unit = *bounds.unit ? std::string(" ") + bounds.unit : "";

@@ -60,9 +60,10 @@ class ChildProcess {
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  /// From now on, exchanges have `seconds` in total before they are too late.
+  /// From now on, all exchanges together may take `seconds` [s]; after that time, they return
+  /// too_late.
   void set_time(double seconds);
-  /// From now on, an exchange that waits becomes too late soon after `stop` has become true.
+  /// From now on, an exchange that waits returns too_late soon after `stop` has become true.
   void set_stop(const std::atomic<bool>& stop) { stop_ = &stop; }
   Exchange send(const void* bytes, size_t size);
   /// Receives exactly `size` bytes.

@@ -75,7 +75,7 @@ class Interrupted : public std::runtime_error {
 /// Throws Error(code, "place: what", place).
 [[noreturn]] void fail(ErrorCode code, const SourcePlace& place, const std::string& what);
 
-/// `what` after the part of `place` that is inside of a file: the words of an Error there.
+/// The words of an Error at `place`: the part of `place` inside the file, and then `what`.
 std::string words_at(const SourcePlace& place, const std::string& what);
 
 /// Throws Error(bad_pattern) for a pattern that names something that does not exist.

@@ -12,9 +12,9 @@ namespace ayumi {
 /// `max_bytes`. It never waits. Every reader of Ayumi opens files with this function.
 std::string read_file(const std::filesystem::path& path, size_t max_bytes = size_t{1} << 30);
 
-/// Throws Error(bad_file) with the path if no regular file can be written there: it is a folder, a
-/// device, a named pipe, a socket or a symbolic link (which is neither replaced nor followed), or
-/// its folder does not exist.
+/// Throws Error(bad_file) with the path if no regular file can be written there. This is so if the
+/// path is a folder, a device, a named pipe, a socket or a symbolic link, or if its folder does not
+/// exist. Symbolic links are neither replaced nor followed.
 void require_file_target(const std::filesystem::path& path);
 
 /// Throws Error(bad_file) if something exists at `path`, even a symbolic link to nowhere.

@@ -1,6 +1,6 @@
 #pragma once
-// Locks that programs hold while they write: of a folder and of a file.
-// The operating system ends a lock with the process, however the process ends.
+// Locks of folders and files, which programs hold while they write. The operating system ends a
+// lock with the process, however the process ends.
 
 #include <filesystem>
 #include <optional>

@@ -18,11 +18,12 @@ namespace ayumi {
 inline constexpr Bounds kThreadBounds = {0, 1024};
 
 /// Runs job(0..count-1) on threads. After an exception, no further jobs are started. Of several
-/// exceptions, that of the first job in order is thrown again. This exception is the same for any
-/// number of threads, because all jobs before that job were started, unless a job asks `stop` and
-/// therefore ends before its own mistake. Such a job throws Interrupted, which is thrown again only
-/// if there is no other exception. If the system grants no further thread, the existing threads do
-/// the work. Throws Error(usage) for a number of threads beyond kThreadBounds.
+/// exceptions, that of the first job in order is thrown again. All jobs before that job were
+/// started, so this exception is the same for any number of threads. The only case in which it can
+/// differ is a job that reads `stop` and ends before its own mistake. Such a job throws
+/// Interrupted, which is thrown again only if there is no other exception. If the system grants no
+/// further thread, the existing threads do the work. Throws Error(usage) for a number of threads
+/// beyond kThreadBounds.
 template <typename Job>
 void in_parallel(size_t count, int threads, std::atomic<bool>& stop, const Job& job) {
   require_within("the number of threads", threads, kThreadBounds);

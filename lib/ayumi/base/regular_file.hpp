@@ -18,8 +18,9 @@ class RegularFile {
 
   /// The size that the system states. Files of /proc state 0, and a file may grow.
   size_t stated_size() const { return size_; }
-  /// Reads the next bytes to `to`, at most `room`. Returns how many there were: 0 at the end.
-  /// Throws Error(bad_file) if reading fails, or if the file has grown beyond its largest size.
+  /// Reads the next bytes to `to`, at most `room`. Returns the number of bytes that were read; 0 at
+  /// the end of the file. Throws Error(bad_file) if reading fails, or if the file has grown beyond
+  /// its largest size.
   size_t read(char* to, size_t room);
   /// The next bytes: `count`, or fewer at the end of the file.
   std::string next(size_t count);

@@ -96,7 +96,7 @@ std::string wide_encoding(std::string_view text) {
   const std::string_view head = text.substr(0, 200);
   for (const size_t width : {2, 4}) {
     const size_t whole = head.size() / width * width;
-    for (const size_t place : {size_t{0}, width - 1}) {  // of the byte that is not 0
+    for (const size_t place : {size_t{0}, width - 1}) {  // place of the byte that is not 0
       bool wide = whole > width;
       for (size_t i = 0; i < whole && wide; ++i)
         wide = i % width == place ? is_plain(head[i]) : head[i] == '\0';

@@ -28,10 +28,10 @@ std::string join(const std::vector<std::string>& items, std::string_view separat
 /// A text such as "a, b and 3 more": at most `most` items, and the number of the others.
 std::string join_first(const std::vector<std::string>& items, size_t most);
 
-/// Makes text safe for a terminal: lines and tabs stay, and every other control character (of ASCII
-/// and of Latin-1, the marks that turn the direction of writing, and bytes that are not UTF-8) is
-/// written out as "\\x1b" or "\\u202e". A name in a file can thus not move the cursor or hide the
-/// text that follows.
+/// Makes text safe for a terminal. Line feeds and tabs stay. All other control characters of ASCII
+/// and Latin-1, the marks that change the direction of writing, and bytes that are not UTF-8 are
+/// written out, such as "\\x1b" or "\\u202e". A name in a file can thus not move the cursor or hide
+/// the text that follows.
 std::string printable(std::string_view text);
 
 }  // namespace ayumi::text

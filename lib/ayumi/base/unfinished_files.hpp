@@ -13,8 +13,8 @@ class UnfinishedPath {
   /// A folder is removed with everything in it. Symbolic links in it are removed and not followed.
   enum class Kind { file, folder };
 
-  /// `made`: number of folders to remove afterwards if they are empty: the one around the path, the
-  /// one around that, and so on.
+  /// `made` is the number of folders to remove afterwards if they are empty: first the folder
+  /// around the path, then the folder around that one, and so on.
   explicit UnfinishedPath(const std::filesystem::path& path, Kind kind = Kind::file, int made = 0);
   ~UnfinishedPath() { release(); }
   UnfinishedPath(UnfinishedPath&& other) noexcept : slot_(other.slot_) { other.slot_ = -1; }

@@ -16,7 +16,8 @@ namespace {
 // A joint of a leg that is too fast within this time before a lift-off or after a landing is fast
 // because of the flight [s]. Chosen: the last part of a push; a stoop lasts 0.1 to 0.3 s.
 constexpr double kPartOfPush = 0.1;
-// The same within the flight [s]. Chosen: the legs still have the speed of the push.
+// The same time inside the flight, after its lift-off or before its landing [s]. Chosen: the legs
+// still have the speed of the push.
 constexpr double kAfterPush = 0.01;
 
 // The error of this kind that is furthest beyond its limit.

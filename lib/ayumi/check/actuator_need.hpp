@@ -1,6 +1,6 @@
 #pragma once
-// Which actuators a motion needs: if the actuators of a profile are too weak, what the motion needs
-// and which profiles of the robot are strong enough.
+// Which actuators a motion needs. If the actuators of a profile are too weak, the result says what
+// the motion needs and which profiles of the robot are strong enough.
 
 #include "ayumi/check/consistency.hpp"
 #include "ayumi/motion/keyed_goal.hpp"
@@ -20,9 +20,9 @@ struct ActuatorNeed {
 ActuatorNeed actuator_need(const RobotModel& model, const CommandSeries& series,
                            const CheckOptions& options, const ConsistencyReport& report);
 
-/// For the goals of VIIP, during which a series only holds a posture: the need of the first goal
-/// whose keyed form is too much for the profile of `options`, or the reason why there is no keyed
-/// form.
+/// The need that follows from the goals of VIIP, during which a series only holds a posture. It is
+/// the need of the first goal whose keyed form is too much for the profile of `options`, or the
+/// reason why a goal has no keyed form.
 ActuatorNeed actuator_need(const RobotModel& model, const std::vector<KeyedGoal>& goals,
                            const CheckOptions& options);
 

@@ -17,13 +17,13 @@ namespace ayumi {
 void mark_consequences(JudgedMotion& motion, std::vector<FindingWindow>& windows);
 
 /// Adds findings for everything that `export` would refuse in the table (JudgedMotion::table). A
-/// table finding follows from an error of the motion itself that reaches it: within the influence
-/// interval of the error, or, for an error of a rate or a force, between the same two rests of the
-/// motion.
+/// table finding is a consequence of an error of the motion itself if it is within the influence
+/// interval of this error. If the error is one of a rate or a force, it is enough that both are
+/// between the same two rests of the motion.
 void add_table_findings(JudgedMotion& motion, std::vector<FindingWindow>& windows);
 
-/// The rows of the table in their order. Each names a cause, what follows from it, in which
-/// interval, and under which condition.
+/// The rows of the table in their order. Each row names a cause, its effects, the interval in which
+/// they are searched, and their condition.
 std::vector<std::array<std::string, 4>> attribution_table();
 
 }  // namespace ayumi

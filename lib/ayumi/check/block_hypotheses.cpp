@@ -40,7 +40,7 @@ std::string block_of(const std::string& pointer) {
 }
 
 // Whether an item is in a block that is in another block, as "/keyframes/2/keyframes/0/keyframes/1"
-// is. Its rounds cannot be told apart by the pointer.
+// is. The pointer does not show to which round of the outer block such an item belongs.
 bool is_nested(const std::string& pointer) {
   // Number of slashes in the pointer of an item in one block. Definition: "/list/block/list/item".
   constexpr long kInOneBlock = 4;

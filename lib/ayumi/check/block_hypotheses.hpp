@@ -9,9 +9,9 @@
 
 namespace ayumi {
 
-/// The changes with which the first block of keyframes fits the first block of phases. Nothing if
-/// one of the lists has no block of at least two rounds, if a block contains another one, or if the
-/// blocks fit.
+/// The changes with which the first block of keyframes fits the first block of phases. The result
+/// is empty if one of the lists has no block of at least two rounds, if a block contains another
+/// block, or if the blocks fit.
 std::vector<Hypothesis> block_hypotheses(const Pattern& pattern);
 
 }  // namespace ayumi

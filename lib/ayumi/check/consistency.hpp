@@ -21,17 +21,19 @@ struct ConsistencyReport {
   std::string profile;      ///< the actuator profile by which the motion was judged
 };
 
-/// "consistent" or "inconsistent", in answers, files and pages.
+/// "consistent" or "inconsistent", in outputs, files and pages.
 const char* verdict_of(bool consistent);
 inline const char* verdict_of(const ConsistencyReport& report) {
   return verdict_of(report.consistent);
 }
 
-/// Sees each sample that is judged, with the positions and rates of the bodies. Several threads may
-/// call it at the same time, for different samples and in any order.
+/// Is called for each sample that is judged, with the positions and rates of the bodies. Several
+/// threads may call it at the same time, for different samples and in any order.
 using SampleObserver = std::function<void(const JudgedSample&, const RobotData&)>;
 
-/// Throws Error(usage) for an unknown tolerance name.
+/// Throws Error(usage) for an unknown tolerance, a tolerance out of range or a time step that is
+/// not above 0, Error(bad_model) for a robot without soles or an unknown profile, and
+/// Error(bad_pattern) for a series without samples.
 ConsistencyReport check_consistency(const RobotModel& model, const CommandSeries& series,
                                     const CheckOptions& options = {},
                                     const SampleObserver& observe = {});

@@ -13,17 +13,16 @@ bool touches_by_limits(const JudgedMotion& motion, const Violation& collision);
 /// Whether the distance of the bodies depends on this joint.
 bool sets_distance(const JudgedMotion& motion, const Violation& collision, int dof);
 
-/// Whether the distance depends on this joint. It is false for a joint outside the legs if one of
-/// the bodies is the trunk.
+/// As sets_distance(), but false for a joint outside the legs if one of the bodies is the trunk.
 bool hangs_on(const JudgedMotion& motion, const Violation& collision, int dof);
 
 /// Whether the torque of a flight is within its limit if no external force or moment acts on the
 /// robot.
 bool holds_in_free_flight(JudgedMotion& motion, const Violation& torque);
 
-/// Whether the COG error is explained by the foot error: the COG error is at most the displacement
-/// of the sole, or it vanishes when the robot is moved rigidly so that the sole is in its place. A
-/// swinging sole always explains it.
+/// Whether the foot error explains the COG error. This is so if the COG error is at most the
+/// displacement of the sole, or if it vanishes when the robot is moved rigidly so that the sole is
+/// in its place. A swinging sole always explains it.
 bool moves_cog(const JudgedMotion& motion, const Violation& foot, const Violation& cog);
 
 /// Whether the ZMP is outside the support because the command puts it there, so that no posture is

@@ -78,8 +78,8 @@ class PlaceKeys {
   std::optional<MirrorMap> map_;
 };
 
-// Amount by which a value exceeds its limit. A limit for values of one sign has this sign. A limit
-// for values of both signs is positive, so only absolute values are compared.
+// Amount by which a value exceeds its limit. Only absolute values are compared: a limit for values
+// of one sign has this sign, and a limit for values of both signs is positive.
 double excess(const Finding& f) { return std::abs(std::abs(f.worst) - std::abs(f.limit)); }
 
 int root_of(const ConsistencyReport& report, int i) {

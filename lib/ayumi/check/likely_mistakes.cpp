@@ -564,7 +564,8 @@ Error with_mistakes(const Error& error, const Pattern& pattern,
   const std::string words =
       "likely cause: " + causes + ". First error: " + (in_file ? error.words() : error.what());
   SourcePlace place = error.place();
-  // What should be changed is where the first cause is.
+  // The place of the error becomes that of the first cause, because the author should change the
+  // pattern there.
   if (in_file && cause->place.starts_with("/")) place.inside = cause->place;
   return {error.code(), (in_file ? pattern.file + ": " : "") + words, place, words};
 }

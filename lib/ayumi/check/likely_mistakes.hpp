@@ -1,8 +1,8 @@
 #pragma once
 // Probable mistakes of the author, if a pattern cannot be sampled or is inconsistent. A finding
 // names a joint and a time, but the author wrote units, footholds and keys. First, single changes
-// are tried one after the other (mistake_search). If no change helps, the values that the robot
-// cannot do are named, independently of the first error.
+// are tried one after the other (mistake_search). If no change helps, the values that are
+// impossible for the robot are named, independently of the first error.
 
 #include <optional>
 #include <string>
@@ -21,13 +21,13 @@ struct Mistake {
   std::string words;
   bool explains_all = false;  ///< after the correction, the pattern is consistent
   bool is_cause = true;       ///< if false, no cause was found, and the words say what was tried
-  int round = 0;              ///< as of an Explanation: mistakes of one round are alternatives
+  int round = 0;              ///< as Explanation::round: mistakes of one round are alternatives
 
   std::string text() const { return place.empty() ? words : place + ": " + words; }
 };
 
-/// The values that the robot cannot do. A consistent pattern may also contain some of them, so call
-/// this only if something is wrong. It takes very little time.
+/// The values that are impossible for the robot. A consistent pattern may also contain some of
+/// them, so call this only if something is wrong. It takes very little time.
 std::vector<Mistake> impossible_values(const RobotModel& model, const Pattern& pattern);
 
 /// The first phase whose swing lasts longer than any swing of a robot, or the whole motion (place

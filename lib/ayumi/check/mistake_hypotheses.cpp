@@ -21,7 +21,7 @@ namespace {
 
 using HypothesisFinder = void(const ExaminedPattern&, std::vector<Hypothesis>&);
 
-// What these functions find, in their order.
+// The hypotheses of these functions, in the order of the functions.
 std::vector<Hypothesis> found_by(std::initializer_list<HypothesisFinder*> finders,
                                  const ExaminedPattern& of) {
   std::vector<Hypothesis> made;
@@ -37,7 +37,8 @@ std::vector<Hypothesis> nearer(const ExaminedPattern& of) {
   std::vector<Hypothesis> made;
   hypotheses::near_footholds(of, made);
   hypotheses::lesser_turns(of, made);
-  // Where a motion cannot be sampled, another change may keep more of it.
+  // If a motion cannot be sampled, smaller swings are tried later (small_swings()), because another
+  // change may keep more of the motion.
   if (of.found.errors != kUnsampled) hypotheses::smaller_swings(of, made, hypotheses::kMildShares);
   return made;
 }

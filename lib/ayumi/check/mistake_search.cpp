@@ -17,9 +17,9 @@ namespace ayumi {
 
 namespace {
 
-// Numbers of values that are left out on trial, that get the other sign, and that are examined
-// closely. Chosen: a time at which a motion fails lies between at most two keys of each of about
-// ten tracks.
+// Largest numbers of values that are left out one at a time, that are tried with the other sign,
+// and that are examined closely. Chosen: a time at which a motion fails lies between at most two
+// keys of each of about ten tracks.
 constexpr size_t kTriedValues = 24;
 constexpr size_t kTriedSigns = 12;
 constexpr size_t kSuspects = 3;
@@ -108,8 +108,8 @@ class Search {
         {Rank::unit, Kind::times, true}, {Rank::slip, Kind::exchanges},
         {Rank::sign, Kind::missing},     {Rank::amount, Kind::nearer},
         {Rank::amount, Kind::paces},     {Rank::amount, Kind::small_swings, false, true}};
-    // For slight errors, a hypothesis of another sign, digit or foot is not tried unless something
-    // in the pattern speaks for it.
+    // For slight errors, a hypothesis of another sign, digit or foot is only tried if something in
+    // the pattern makes it likely.
     static const std::vector<Stage> slight = {{Rank::unit, Kind::units},
                                               {Rank::unit, Kind::irregular, true},
                                               {Rank::amount, Kind::nearer},
@@ -124,7 +124,7 @@ class Search {
     return chosen();
   }
 
-  /// Leaves out explanations that turned out to be none.
+  /// Removes explanations that turned out to be wrong.
   void drop(const std::vector<Candidate>& candidates) {
     std::erase_if(tried_, [&](const Candidate& tried) {
       return std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& c) {
@@ -490,8 +490,8 @@ std::string before_result(const std::string& instead) {
   return instead + (instead.ends_with(',') ? " " : ", ");
 }
 
-// If no sequence of changes is enough: the first smaller hop that is, or else the one that leaves
-// the fewest errors at the servo's period, and fewer than `left`.
+// Used if no sequence of changes is enough. Returns the first smaller hop that is enough, or else
+// the hop that leaves the fewest errors at the servo's period, if they are fewer than `left`.
 std::optional<Candidate> smaller_hop(Trials trials, const RobotModel& model, const Pattern& pattern,
                                      const TrialOutcome& found, int left) {
   const Hypotheses hypotheses(model, pattern, found);  // the changes refer to it
@@ -531,7 +531,8 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
   for (int round = 0; round < kRounds && !found.good() && !trials.ended(); ++round) {
     const int left_rounds = kRounds - round;
     std::optional<Search> search(std::in_place, trials, model, current, found, left_rounds);
-    // The changes of these candidates refer to the search.
+    // The functions that make the changes of these candidates refer to `search`, which must live
+    // longer.
     std::vector<Candidate> possible;
     while (possible.empty()) {
       std::vector<Candidate> best = search->best();
@@ -560,7 +561,7 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
       if (best.empty() && again.empty()) break;
       std::vector<Candidate> unsampled;
       for (Candidate& c : best) {
-        // A quick trial does not see all that is wrong at the servo's period.
+        // A quick trial does not find the errors that only show at the servo's period.
         const bool looked_closer = c.outcome.good() && !trials.exact();
         if (looked_closer) c.outcome = trials.exactly(current, c.hypothesis.mend);
         if (c.outcome.errors == kUnsampled) {
@@ -582,7 +583,7 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
         possible.push_back(std::move(c));
       }
       if (trials.ended()) break;
-      // The next best ones may be possible.
+      // The next best explanations may be possible.
       unsampled.insert(unsampled.end(), again.begin(), again.end());
       search->drop(unsampled);
     }
@@ -596,7 +597,7 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
     found = left;
   }
   if (!found.good()) {
-    // These few trials are made even if the search ended, because nothing else names a way out.
+    // These few trials are made even if the search ended, because nothing else has found a remedy.
     const auto hop = smaller_hop(Trials(model, pattern, options, progress, kHopTrials), model,
                                  pattern, given, found.errors);
     if (hop) {

@@ -35,10 +35,11 @@ constexpr double kLongestStep = 0.01;
 // Number of trials after which a person may stop the search. Chosen: so many trials of a walk take
 // 0.1 s.
 constexpr size_t kTrialsBetweenReports = 4;
-// An error is slight if it exceeds its limit by less than this share of the limit, of the length of
-// a leg [m], of the weight [N] or of both [N m], or by less than this angle [rad]. Chosen: if a
-// unit, digit, sign, foot or side is wrong, the value is wrong by its whole size, and its errors
-// are large, too. A motion whose errors are all slight is near its limits.
+// An error is slight if it exceeds its limit by less than an amount that depends on its unit: a
+// share of the length of a leg for [m], of the weight for [N], of the product of both for [N m], an
+// angle for [rad], and a share of the limit for all other units. Chosen: if a unit, digit, sign,
+// foot or side is wrong, the value is wrong by its whole size, and its errors are large, too. A
+// motion whose errors are all slight is near its limits.
 constexpr double kSlightShare = 0.25, kSlightLength = 0.015, kSlightForce = 0.05,
                  kSlightAngle = 0.05;
 // Number of errors whose windows show where the mistake may be. Chosen: one mistake is near the
@@ -118,7 +119,8 @@ TrialOutcome Trials::of(const Pattern& pattern, bool exact) const {
 
 std::vector<TrialOutcome> Trials::after(const Pattern& pattern, const std::vector<Mend>& mends) {
   std::vector<TrialOutcome> outcomes(mends.size());
-  std::vector<std::pair<size_t, Pattern>> mended;  // few at once: a long pattern is large
+  // Only a few versions exist at once, because a long pattern needs much memory.
+  std::vector<std::pair<size_t, Pattern>> mended;
   const auto try_mended = [&] {
     report(progress_, {"looking for the cause", -1, ""});  // may stop the search
     std::atomic<bool> stop = false;
@@ -135,7 +137,7 @@ std::vector<TrialOutcome> Trials::after(const Pattern& pattern, const std::vecto
       ended_ = true;
       break;
     }
-    std::optional<Pattern> version(pattern);  // empty where the change cannot be made
+    std::optional<Pattern> version(pattern);  // empty if the change cannot be made
     try {
       mends[i](*version);
     } catch (const Error&) {

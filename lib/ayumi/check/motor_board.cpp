@@ -16,7 +16,7 @@ constexpr double kFewestCounts = -32768, kMostCounts = 32767;
 constexpr double kWhole = 1e-6;  // tolerance in counts. Chosen: above rounding errors of deg and
                                  // rad
 
-// Keeps the worst of each kind for one joint.
+// Keeps the worst difference of each kind for one joint.
 class Watch {
  public:
   Watch(std::string joint, double unit) : joint_(std::move(joint)), unit_(unit) {}

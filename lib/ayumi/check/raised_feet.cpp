@@ -14,7 +14,7 @@ namespace ayumi {
 namespace {
 
 // A sole that is nearer to the ground than this stands on it [m]. Chosen: soft soles and the servos
-// of a leg give way by about this distance.
+// of a leg yield by about this distance.
 constexpr double kStands = 1e-3;
 // Two times nearer than this are the same [s]. Definition: rounding of sums of written times.
 constexpr double kRoundedTime = 1e-9;

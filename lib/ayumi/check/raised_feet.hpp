@@ -18,7 +18,7 @@ struct RaisedFoot {
   std::string instead;  ///< the remedy
   std::function<void(Pattern&)> mend;  ///< puts the foot on the ground
   double begin = 0;       ///< beginning of the phase that leads the foot to this height [s]
-  bool relative = false;  ///< whether the mend also moves all later steps
+  bool relative = false;  ///< whether `mend` also moves all later steps
 };
 
 /// The landings and keys that put a foot more than 1 mm above the ground or below it, and the feet

@@ -1,6 +1,7 @@
 #pragma once
-// Distance of a planned motion from its limits over time, for a picture: the worst sample of each
-// short stretch of time. The verdict is that of check_consistency().
+// Distance of a planned motion from its limits over time, for a picture. It has the worst sample of
+// each short interval of time, which is called a stretch here. The verdict is that of
+// check_consistency().
 
 #include <vector>
 

@@ -1,6 +1,6 @@
 #pragma once
-// Time scaling answers whether a motion is too fast where it violates its limits. The same path is
-// played slower: rates are multiplied by a pace, accelerations by the square of the pace.
+// Time scaling shows whether a motion violates its limits because it is too fast. The same path is
+// played more slowly: rates are multiplied by a pace, accelerations by the square of the pace.
 
 #include "ayumi/limits/judged_motion.hpp"
 

@@ -100,7 +100,7 @@ class Reader {
       while (before > 0 && is_member(before)) --before;
       while (after + 1 < track.numbers.size() && is_member(after)) ++after;
       const bool has_before = !is_member(before), has_after = !is_member(after);
-      // Before the first number of a track, its start holds from t = 0 on.
+      // From t = 0 to the first number of a track, the track has its start value.
       const double from = has_before ? value(track.numbers[before]) : track.start;
       const double since = has_before ? track.numbers[before].t : 0;
       const double t = track.numbers[i].t;
@@ -421,7 +421,7 @@ std::string WrittenValue::text(const Pattern& pattern, double value) const {
 }
 
 std::string WrittenValue::elsewhere() const {
-  // Places that are listed. Chosen: more would hide the value.
+  // Number of places that are listed. Chosen: more would hide the value.
   constexpr size_t kListed = 3;
   std::vector<std::string> others;
   for (const WrittenNumber& number : numbers) {

@@ -23,14 +23,14 @@ struct WrittenNumber {
   std::string place = {};
 };
 
-/// One value of the author: a number, or a number that is repeated. Keys that hold a value contain
-/// it twice.
+/// One value of the author: a number, or a number that is repeated. Two keys between which a value
+/// stays constant both contain it.
 struct WrittenValue {
   std::string place;  ///< JSON pointer of the first phase or keyframe with the value, or of the
                       ///< value itself
   std::string words;  ///< name of the value: "the COG height"
   Quantity quantity = Quantity::length;
-  bool across = false;        ///< a coordinate whose sign tells left from right
+  bool across = false;        ///< whether its sign distinguishes left from right
   double begin = 0, end = 0;  ///< the motion depends on it at least between these times [s]
   std::vector<WrittenNumber> numbers = {};  ///< its numbers, at least one
 

@@ -43,9 +43,9 @@ class AngularMomentumTask {
 
   /// One tick of dt [s]. `moment` is dL about the COG in world axes [N m]; its vertical part is not
   /// used. `data` has the positions of the reference, `commanded` has the joints of the plan [rad],
-  /// and `tilt` is the tilt of the plan's trunk about the world's x and y axes [rad]. `room` is
-  /// what the joints of the legs leave to the trunk. The unit of the rate at which the turn returns
-  /// is omega = sqrt(g / z) [1/s].
+  /// and `tilt` is the tilt of the plan's trunk about the world's x and y axes [rad]. `room` is the
+  /// turn of the trunk that the position limits of the leg joints still allow. `omega` is sqrt(g/z)
+  /// [1/s]; the rate at which the turn returns is proportional to it.
   const UpperBodyTurn& update(const Eigen::Vector3d& moment, const RobotData& data,
                               const Eigen::VectorXd& commanded, const Eigen::Vector2d& tilt,
                               const TurnRoom& room, double omega, double dt);

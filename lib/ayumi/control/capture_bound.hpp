@@ -27,8 +27,8 @@ CaptureRegion capture_region(const RobotModel& model, const CommandSeries& serie
 /// the plan itself leaves the region.
 double capture_bound(const CaptureRegion& region, const Eigen::Vector2d& u);
 
-/// m omega times the distance along u from the commanded ZMP to the edge of the present support [N
-/// s].
+/// m omega times the distance along the unit vector u from the commanded ZMP to the edge of the
+/// present support [N s]; 0 without a support.
 double edge_bound(const RobotModel& model, const CommandSeries& series, long k,
                   const Eigen::Vector2d& u);
 

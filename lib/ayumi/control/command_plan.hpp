@@ -1,7 +1,7 @@
 #pragma once
 // The command of a pattern relative to the robot's feet. It is the sampled command, or the same
-// command moved over the ground after VIIP has placed steps, or with footholds that answer a push.
-// Laws that follow a command take their plan from here.
+// command moved over the ground after VIIP has placed steps, or with footholds that respond to a
+// push. Laws that follow a command take their plan from here.
 
 #include <optional>
 
@@ -43,7 +43,7 @@ class CommandPlan {
   /// decreases slowly to zero.
   void go_on_from(const CommandSample& from, long k);
 
-  /// From now on, the footholds answer pushes. May only be called before the first tick.
+  /// From now on, the footholds respond to pushes. May only be called before the first tick.
   void move_footholds(const RobotModel& model, const FootholdParams& params);
 
   /// The command one tick after now(), which depends on the measurements. If a foot has landed

@@ -14,7 +14,8 @@
 
 namespace ayumi {
 
-/// Throws Error(usage) for an unknown gain or a gain out of range.
+/// Throws Error(usage) for an unknown gain or a gain out of range, and Error(bad_model) if this
+/// gain is in the sidecar.
 void check_controller(const RobotModel& model, const ControllerSpec& spec);
 
 /// The gains by name as the controller uses them; there are none in open loop. Throws the same
@@ -25,7 +26,8 @@ std::vector<std::pair<std::string, double>> gains_in_use(const RobotModel& model
 class Controller {
  public:
   /// The series and the model must outlive the controller and its copies. Throws the same errors as
-  /// check_controller(), and Error(bad_pattern) for a VIIP phase that the law cannot execute.
+  /// check_controller(), and Error(bad_pattern) for a VIIP phase that the law cannot execute, or if
+  /// VIIP is chosen for a pattern without VIIP phases.
   Controller(const RobotModel& model, const ActuatorLimits& limits, const CommandSeries& series,
              const ControllerSpec& spec);
 

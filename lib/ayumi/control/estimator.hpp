@@ -1,8 +1,8 @@
 #pragma once
-// Estimates what a controller can know. The readings of encoders, tilt, gyro and load cells of the
-// feet become COG, its rate, ZMP and vertical force, all in the plan frame (the frame in which the
-// stance foot is where the plan says). So drift of the robot in the world never affects the control
-// law.
+// Estimates what a controller can know: the COG, its rate, the ZMP and the vertical force, from the
+// readings of encoders, tilt, gyro and load cells of the feet. All results are in the plan frame,
+// in which the stance foot is where the plan has it. So drift of the robot in the world never
+// affects the control law.
 
 #include <array>
 

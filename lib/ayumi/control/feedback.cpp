@@ -4,8 +4,8 @@
 //   K = 1 + q,  D = (1 + q)/omega:  cmdZ - K Dx - D Ddx = cmdZ + (1 + q)(dcm - cmd dcm).
 // The error grows with the printed sign, which is + D Ddx.
 // In (26) and (27), a spring kappa = K_Pz/m with gravity compensated keeps dz^2/2 + kappa z^2/2
-// constant, so the speed at its middle is z_d sqrt(kappa): sqrt(2 g z_H) for a push, the falling
-// speed for a landing.
+// constant, so the speed at its middle is z_d sqrt(kappa). It has to be sqrt(2 g z_H) for a push,
+// and the falling speed for a landing.
 #include "ayumi/control/feedback.hpp"
 
 #include <algorithm>

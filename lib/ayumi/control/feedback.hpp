@@ -38,18 +38,19 @@ double long_term_force(double command_fz, double mass, double K_z, double D_z,
 double admissible_force(double fz, double mass);
 
 /// Short-term absorption: (14)(15) closed by the measured ZMP. `gap` is the measured ZMP minus ref
-/// ZMP [m]. The ground gives omega^2 (x - measured), while ref ZMP requires omega^2 (x - ref); the
-/// difference is the acceleration that the reference lacks. With a gain of 0, the reference is
-/// played unchanged; with a large gain, the result approaches (14) [m/s^2].
+/// ZMP [m]. The ground gives the acceleration omega^2 (x - measured), while ref ZMP requires
+/// omega^2 (x - ref). The difference is the acceleration that the reference lacks. The result is
+/// `gain` times this difference [m/s^2]. With a gain of 0, the reference is played unchanged; with
+/// a large gain, the motion approaches (14).
 inline Eigen::Vector2d short_term_acceleration(double gain, double omega2,
                                                const Eigen::Vector2d& gap) {
   return gain * omega2 * gap;
 }
 
 /// Damping of the rocking of the robot on its soft soles and servos [m/s^2]. The reference follows
-/// the measured velocity of the COG, from which it differs by `estimate.dcog - reference_dcog`
-/// [m/s], with the rate gain * omega and a bounded acceleration. z is the height of the COG [m].
-/// docs/theory.md, "Late sensors".
+/// the measured velocity of the COG with the rate gain * omega and a bounded acceleration.
+/// `estimate.dcog - reference_dcog` is its distance from this velocity [m/s]. z is the height of
+/// the COG [m]. docs/theory.md, "Late sensors".
 Eigen::Vector2d rocking_acceleration(double gain, double omega, double z,
                                      const Eigen::Vector3d& reference_dcog,
                                      const Estimate& estimate);
@@ -67,7 +68,8 @@ struct HeightGains {
   double damping = 0;    ///< K_Dz [N s/m]
 };
 
-/// (24): ref f_z for a COG at height z [m] with speed dz [m/s] that should come to rest at `goal`.
+/// (24): the ref f_z [N] for a COG at height z [m] with speed dz [m/s] that should come to rest at
+/// the height `goal` [m]. `weight` is that of the robot [N].
 inline double height_force(const HeightGains& gains, double weight, double goal, double z,
                            double dz) {
   return gains.stiffness * (goal - z) - gains.damping * dz + weight;

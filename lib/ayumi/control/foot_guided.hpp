@@ -18,7 +18,8 @@ double foot_guided_gain(double omega, double time);
 
 class FootGuided {
  public:
-  /// `least_time` is the smallest time for this, in units of 1/omega.
+  /// `least_time` is the smallest time that the DCM is given to reach its place, in units of
+  /// 1/omega.
   FootGuided(const CommandSeries& series, double least_time);
 
   /// The gain at sample k of the series.

@@ -1,7 +1,7 @@
 #pragma once
 // If a push is too large for the present support, moves the coming footholds of a pattern and
-// speeds up its clock, so that the next step answers the rest of the push. docs/theory.md, "Moving
-// footholds".
+// speeds up its clock, so that the next step compensates the rest of the push. docs/theory.md,
+// "Moving footholds".
 
 #include <optional>
 #include <vector>
@@ -15,7 +15,7 @@
 
 namespace ayumi {
 
-/// One swing of a pattern; its phases are numbers of samples.
+/// One swing of a pattern. Its times are counted in samples of the series.
 struct PlannedSwing {
   double lift = 0, land = 0;  ///< beginning and end of the single support
   double rest = 0;            ///< end of the double support after it
@@ -25,7 +25,8 @@ struct PlannedSwing {
 /// The swings that end in a double support, in time order.
 std::vector<PlannedSwing> swings_of(const CommandSeries& series);
 
-/// The command at a phase between two samples. After the end, it is the last posture at rest.
+/// The command at `phase` [samples], which may be between two samples. After the end, it is the
+/// last posture at rest.
 CommandSample command_between(const CommandSeries& series, double phase);
 void command_between(const CommandSeries& series, double phase, CommandSample& command);
 
@@ -34,12 +35,13 @@ struct FootholdParams {
   /// error that the footholds remove; 0 switches this off.
   double share = 0;
   double time_scale_limit = 2.5;  ///< fastest clock of the pattern, at least 1
-  /// Footholds and clock are chosen by the program of control/step_program, which answers every
-  /// error. Without it, a search answers only the part of an error that the supports cannot remove.
+  /// Footholds and clock are chosen by the program of control/step_program, which corrects every
+  /// error. Without it, a search corrects only the part of an error that the supports cannot
+  /// remove.
   std::optional<StepWeights> program = {};
 };
 
-/// The plan of a pattern whose footholds move. As long as the supports can answer all errors, the
+/// The plan of a pattern whose footholds move. As long as the supports can correct all errors, the
 /// plan equals the pattern to the last bit. After that, the coming footholds, ZMP and COG are
 /// shifted over the ground.
 class FootholdShift {

@@ -22,8 +22,8 @@ namespace {
 constexpr int kPreview = 6;
 
 // Largest error of position that the steps correct, as a multiple of the distance of the feet.
-// Chosen: with a larger error, the path is moved to the feet, so that a push does not make the
-// robot hurry back. No measured case changes between half and twice the value (constants.md).
+// Chosen: with a larger error, the path is moved to the feet, so that the robot does not walk back
+// fast after a push. No measured case changes between half and twice the value (constants.md).
 constexpr double kLargestError = 0.35;
 
 Vector2d turned_by(const Vector2d& v, double yaw) { return elementary::turn_in_plane(yaw) * v; }

@@ -1,7 +1,7 @@
 #pragma once
-// The places where VIIP puts the feet: a nominal path of footholds, and the DCM (divergent
-// component of motion, x + dx/omega) that the pendulum must have when a foot lands so that the
-// robot can continue on this path.
+// The places where VIIP puts the feet. They follow from a nominal path of footholds, and from the
+// DCM (divergent component of motion, x + dx/omega) that the pendulum must have when a foot lands,
+// so that the robot can continue on this path.
 
 #include <Eigen/Geometry>
 #include <array>
@@ -23,9 +23,10 @@ GroundPose ground_pose(const RobotModel& model, Side side, const Eigen::Isometry
 /// The level sole frame at height z [m] for a sole whose centre and heading are `pose`.
 Eigen::Isometry3d sole_frame(const RobotModel& model, Side side, const GroundPose& pose, double z);
 
-/// b of every foothold. It is the DCM minus the foothold at the moment when the foot lands, so that
-/// the pendulum reaches b of the next foothold after `growth` = exp(omega T) while its ZMP is on
-/// this one. `last` is b of the last foothold.
+/// The offset b [m] of every foothold: the DCM minus the foothold at the moment when the foot
+/// lands. During a step with the ZMP on this foothold, the distance of the DCM from it grows by the
+/// factor `growth` = exp(omega T). At the end, the DCM has the offset b of the next foothold from
+/// that foothold. `last` is b of the last foothold.
 std::vector<Eigen::Vector2d> landing_offsets(const std::vector<Eigen::Vector2d>& footholds,
                                              double growth, const Eigen::Vector2d& last);
 

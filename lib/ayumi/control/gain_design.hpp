@@ -19,7 +19,7 @@ struct LoopAnalysis {
   /// of the loop are too large for a computation (then the decay is -infinity), or if no error
   /// lasts longer than a tick (infinity).
   std::vector<std::complex<double>> poles;
-  bool stable = false;
+  bool stable = false;   ///< whether no error grows faster than the loop tolerates
   double decay = 0;      ///< decay of the slowest mode; negative if it grows [1/s]
   double frequency = 0;  ///< frequency of that mode [Hz]
 };
@@ -39,7 +39,7 @@ WeakestLoop weakest_loop(const std::vector<LoopModel>& loops, const DtadParams& 
 DtadParams gains_from_poles(std::complex<double> p1, std::complex<double> p2,
                             DtadParams params = {});
 
-/// What the designer asks for, as quantities with a physical meaning instead of gains. A value that
+/// The wishes of the designer, as quantities with a physical meaning instead of gains. A value that
 /// is not set leaves its gain unchanged.
 struct GainWishes {
   /// Poles of the COG under (18)(19) [1/s].
@@ -58,13 +58,14 @@ struct GainWishes {
 /// possible.
 DtadParams design_gains(double omega, const GainWishes& wishes, DtadParams params = {});
 
-/// The largest ka with which all loops are stable while the other gains stay as they are; 0 if
-/// there is none.
+/// The largest ka, up to `most`, with which all loops are stable while the other gains stay as they
+/// are; 0 if there is none.
 double largest_stable_ka(const std::vector<LoopModel>& loops, DtadParams params, double most = 20);
 
-/// Gains with which all loops are stable: ks and kd together, damp, ka and tau_z, with as few and
-/// as small changes as possible. They are the first tried gains whose errors decay within
-/// kSlowestDecay / omega, or else the ones with the fastest decay. Empty if none of them is stable.
+/// Gains with which all loops are stable. Only ks and kd (together), damp, ka and tau_z are
+/// changed, in as few and as small steps as possible. The result is the first tried choice whose
+/// errors decay within kSlowestDecay / omega (gain_design.cpp), or else the choice with the fastest
+/// decay. Empty if no choice is stable.
 std::optional<DtadParams> nearest_stable_gains(const std::vector<LoopModel>& loops,
                                                const DtadParams& params);
 
@@ -76,9 +77,9 @@ std::vector<std::pair<std::string, double>> changed_loop_gains(const DtadParams&
 /// If a loop is unstable, throws Error(usage) that names the growing mode and stable gains nearby.
 void refuse_unstable(const std::vector<LoopModel>& loops, const DtadParams& params);
 
-/// The reason why a robot should not be run with a controller at this COG height, in the words of
-/// refuse_unstable(). Empty if the loop is stable, and for demonstrations (dtad-literal,
-/// as_printed), other controllers and legs without servos.
+/// The reason why a robot should not be run with a controller at this COG height [m] and with this
+/// tick [s], in the words of refuse_unstable(). Empty if the loop is stable, and for demonstrations
+/// (dtad-literal, as_printed), other controllers and legs without servos.
 std::string instability(const RobotModel& model, const ActuatorLimits& actuators,
                         const ControllerSpec& spec, double height, double tick);
 

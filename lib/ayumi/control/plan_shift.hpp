@@ -1,6 +1,6 @@
 #pragma once
 // Moves a plan. Only this file moves a command over the ground. The pattern is moved when steps
-// that VIIP placed end elsewhere (control/command_plan) and when footholds answer a push
+// that VIIP placed end elsewhere (control/command_plan) and when footholds respond to a push
 // (control/foothold_shift).
 
 #include <array>

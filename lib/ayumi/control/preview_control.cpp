@@ -1,5 +1,5 @@
-// In units of time of 1/omega, the cart-table is x''' = u, ZMP = x - x''. With X = (e, change of
-// x),
+// With 1/omega as the unit of time, the cart-table is x''' = u, ZMP = x - x''. With X = (e, change
+// of x),
 //   X+ = [1 CA; 0 A] X + [CB; B] du - [1; 0] change of the planned ZMP,
 // the smallest cost is reached by du = -K X - sum_j F(j) change of the planned ZMP(k + j) with P of
 // the Riccati equation,
@@ -46,7 +46,7 @@ PreviewGains preview_gains(double tick, double effort, double horizon) {
   g.integral = K[0];
   g.state = K.tail<3>();
 
-  // Two poles are near -1; the other two are much faster.
+  // In continuous time, two poles are near -1 (in units of omega); the other two are much faster.
   const std::optional<Eigen::VectorXcd> found = eigenvalues(g.A - g.B * K);
   if (!found)
     fail(ErrorCode::usage, "preview control: no gains can be computed for the effort " +

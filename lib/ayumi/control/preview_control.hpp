@@ -1,8 +1,8 @@
 #pragma once
-// ZMP preview control, one of the baselines of DTAD: the jerk of the COG follows from its state,
-// the previous ZMP and the coming planned ZMP, and the ZMP follows from the measured state with the
-// same gains. After Kajita and others, "Biped walking pattern generation by using preview control
-// of zero-moment point" (2003). docs/theory_baselines.md, "Preview control".
+// ZMP preview control, one of the baselines of DTAD. The jerk of the COG follows from the state of
+// the COG, the previous ZMP and the coming planned ZMP. The ZMP follows from the measured state
+// with the same gains. After Kajita and others, "Biped walking pattern generation by using preview
+// control of zero-moment point" (2003). docs/theory_baselines.md, "Preview control".
 
 #include <Eigen/Core>
 #include <memory>
@@ -11,7 +11,7 @@
 
 namespace ayumi {
 
-/// The gains for the cart-table with the state (x, dx, ddx), in units of time of 1/omega:
+/// The gains for the cart-table with the state (x, dx, ddx), where the unit of time is 1/omega:
 ///   jerk(k) = -integral sum_{i<=k} e(i) - state (x, dx, ddx)(k) - sum_j preview(j) planned
 ///   ZMP(k+j),
 /// where ZMP = x - ddx and e = ZMP - planned ZMP. It minimizes the sum of e^2 + effort / tick^2
@@ -31,7 +31,8 @@ struct PreviewGains {
   double R = 0;
 };
 
-/// `tick` and `horizon` are in units of 1/omega.
+/// `tick` and `horizon` are in units of 1/omega. Throws Error(usage) if no gains can be computed
+/// for this effort and tick.
 PreviewGains preview_gains(double tick, double effort, double horizon);
 
 /// The horizontal motion of the COG.

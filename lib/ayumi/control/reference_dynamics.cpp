@@ -1,5 +1,5 @@
 // The acceleration is computed as the filtered difference of the velocities of two ticks. It cannot
-// be taken from the plan, because the motion also contains the law's answers to measurements.
+// be taken from the plan, because the motion also contains the law's response to measurements.
 // Inverse dynamics give the wrench of the ground about the base. In double support, the two feet
 // share the wrench in the ratio in which the ZMP lies between the places of their soles, so the
 // shares change continuously while the ZMP moves from foot to foot. The centre of pressure of each

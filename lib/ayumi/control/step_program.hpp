@@ -35,7 +35,9 @@ struct StepProblem {
   int edges = 0;
 };
 
-/// Writes the edges of a polygon about the planned ZMP [m] into the problem.
+/// Writes the edges of a polygon relative to the planned ZMP [m] into the problem. `yaw` is the
+/// heading of the stance foot [rad], `height` the height of the COG [m], and `share` the share of
+/// the polygon that may be used.
 void set_support(StepProblem& problem, const ConvexPolygon& about_zmp, double yaw, double height,
                  double share);
 

@@ -1,7 +1,7 @@
 #pragma once
-// The foot in the air, for every law that places feet: its path to a foothold that may move until
-// the landing, its height, the detection of its landing, and its smallest distance from the other
-// foot.
+// The foot in the air, for every law that places feet. Its foothold may move until the landing.
+// This file has its path and its height, the detection of its landing, and its smallest distance
+// from the other foot.
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -23,9 +23,9 @@ double sole_half_width(const RobotModel& model);
 /// the ground.
 bool bears(const RobotModel& model, const Estimate& estimate, Side side);
 
-/// The height of a swing foot as a share of the lift, where `share` is the share of the swing that
-/// has passed since lift-off (0 to 1): 64 (s (1 - s))^3, with zero rate and acceleration at both
-/// ends.
+/// The height of a swing foot as a share of the lift: 64 (s (1 - s))^3, with zero rate and
+/// acceleration at both ends. s is `share`, the share of the swing that has passed since lift-off
+/// (0 to 1).
 inline double swing_height(double share) { return elementary::power<3>(4 * share * (1 - share)); }
 
 /// The path of smallest jerk from the present place, with its rate and acceleration, to rest at a

@@ -11,11 +11,11 @@
 
 namespace ayumi {
 
-/// A matrix of dof x (samples + 1) [rad]: tau / kp, the angle by which a target must be ahead of
-/// the posture so that the joint does not sag. tau is the torque of the planned motion on its
-/// planned contacts (the torque that the check judges), limited to the torque that the motor can
-/// give by `limits`. The last column is for the last posture at rest. Zero for joints without a
-/// motor.
+/// The angle tau / kp by which a target must be ahead of the posture so that the joint does not sag
+/// [rad], as a matrix of dof x (samples + 1). tau is the torque of the planned motion on its
+/// planned contacts, which is the torque that the check judges. It is limited to the torque that
+/// the motor can give by `limits`. The last column is for the last posture at rest. The angle is
+/// zero for joints without a motor.
 Eigen::MatrixXd torque_feedforward(const RobotModel& model, const ActuatorLimits& limits,
                                    const CommandSeries& series);
 

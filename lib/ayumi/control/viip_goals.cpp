@@ -1,8 +1,9 @@
-// A displacement is reachable if the robot can stand at its end: the COG is inside the support of
-// the feet with the margin that VIIP keeps, and VIIP's own inverse kinematics (resolve()) reaches
-// it with all joints inside their limits. Bisection finds the possible part of a displacement. A
-// velocity is reachable if the robot can stand and stop at the end of the motion: the DCM is inside
-// the support, too. For steps, a walk of the same shape is generated with keys and sampled.
+// A displacement is reachable if the robot can stand at its end. For this, the COG must be inside
+// the support of the feet with the margin that VIIP keeps, and VIIP's own inverse kinematics
+// (resolve()) must reach it with all joints inside their limits. Bisection finds the possible part
+// of a displacement. A velocity is reachable if the robot can stand and stop at the end of the
+// motion: the DCM is inside the support, too. For steps, a walk of the same shape is generated with
+// keys and sampled.
 #include "ayumi/control/viip_goals.hpp"
 
 #include <algorithm>

@@ -13,8 +13,8 @@ namespace ayumi {
 std::vector<KeyedGoal> keyed_goals(const RobotModel& model, const CommandSeries& series,
                                    const ControllerSpec& controller);
 
-/// Throws Error(bad_pattern) naming the goal, the value and how much is possible, for a COG that
-/// would leave the support of the feet or the reach of the legs, and for steps that are too long
+/// Throws Error(bad_pattern), which names the goal, the value and the largest possible value, if
+/// the COG would leave the support of the feet or the reach of the legs, or if steps are too long
 /// for the legs.
 void require_reachable_goals(const RobotModel& model, const CommandSeries& series,
                              const ControllerSpec& controller);

@@ -1,14 +1,14 @@
-// Solves (22): among all joint rates that do the task J_U x = u and give the COG its reference
-// velocity, it takes those nearest to the commanded rates in the norm W. (23) is the solution. A
-// law without commanded rates (VIIP) uses (28)(29), which is the same problem with the bias 0. Here
-// the bias also pulls the joints towards the posture that is commanded, or held.
-// The anchored sole moves with the plan (at rest in stance), so the velocity of the floating base
-// is V = map dtheta + rigid(anchor motion), where the map belongs to a sole at rest. Angular rows
-// are scaled by a length so that the damping treats them like metres.
-// A joint at a limit cannot move as fast as the task requires. Then the task of the COG height is
-// reduced first, and that of the trunk's attitude next: their rows are scaled down, so that the
-// damping outweighs them. The rows of the feet and of the horizontal COG, which keep the robot
-// upright, are not scaled: if a joint is still too fast, the whole motion becomes slower.
+// Solves (22): among all joint rates that do the task J_U x = u, which includes the reference
+// velocity of the COG, it takes those nearest to the commanded rates in the norm W. (23) is the
+// solution. A law without commanded rates (VIIP) uses (28)(29), which is the same problem with the
+// bias 0. Here the bias also pulls the joints towards the posture that is commanded, or held. The
+// anchored sole moves with the plan (at rest in stance), so the velocity of the floating base is V
+// = map dtheta + rigid(anchor motion), where the map belongs to a sole at rest. Angular rows are
+// scaled by a length so that the damping treats them like metres. A joint at a limit cannot move as
+// fast as the task requires. Then the task of the COG height is reduced first, and that of the
+// trunk's attitude next: their rows are scaled down, so that the damping outweighs them. The rows
+// of the feet and of the horizontal COG, which keep the robot upright, are not scaled: if a joint
+// is still too fast, the whole motion becomes slower.
 #include "ayumi/control/whole_body.hpp"
 
 #include <algorithm>
@@ -51,7 +51,7 @@ constexpr int kLimitPasses = 4;
 constexpr double kCogSpeedLimit = 0.8;
 
 // Acceleration limit of the reference COG, as a multiple of g. Chosen: the force of a leg in its
-// strongest motion, a landing; only an unstable law asks for more. No measured case changes between
+// strongest motion, a landing; only an unstable law requires more. No measured case changes between
 // half and twice the value (constants.md).
 constexpr double kCogAccelerationLimit = 4;
 
@@ -70,16 +70,16 @@ constexpr double kBraking = 5;
 constexpr double kInsideSole = 0.15;
 
 // Time constant of the low pass of the tilt that the ankles compensate [s]. Chosen: stiff servos
-// would otherwise follow the noise of the IMU. In the walk of HOAP-1 with its sensors' noise the
-// rms of ZMP - ref ZMP is 20.6 mm without it, 8.4 mm with 0.01 s, 6.9 mm with 0.05 s and 7.0 mm
-// with 0.1 s; the answer to late sensors does not change. With 0.05 s the ankles yield less to a
-// plate under half a sole than with 0.1 s.
+// would otherwise follow the noise of the IMU. In the walk of HOAP-1 with its sensors' noise, the
+// rms of ZMP - ref ZMP is 20.6 mm without the low pass, 8.4 mm with 0.01 s, 6.9 mm with 0.05 s and
+// 7.0 mm with 0.1 s. The response to late sensors does not change. With 0.05 s the ankles yield
+// less to a plate under half a sole than with 0.1 s.
 constexpr double kTiltFilter = 0.1;
 
 // Rate at which the joints return to their command when the robot is off the ground [1/s]. Chosen:
-// in a jump of 0.03 m, the legs return by four fifths before they land, and they are soft enough:
-// in jumps of HOAP-1 the largest force of the landing is 188 to 256 N with 10, 200 to 353 N with 20
-// and 256 to 403 N with 40; open loop has 295 to 562 N.
+// in a jump of 0.03 m, the legs return by four fifths before they land, and they are soft enough.
+// In jumps of HOAP-1, the largest force of the landing is 188 to 256 N with 10, 200 to 353 N with
+// 20, and 256 to 403 N with 40. In open loop, it is 295 to 562 N.
 constexpr double kFlightRate = 10;
 
 // Damping of the turn that the joints of a hip make together [1]. Chosen: joints whose axes have

@@ -1,7 +1,7 @@
 #pragma once
-// COG velocity -> whole-body joint rates, (22)(23) and (28)(29), and the reference body that every
-// law moves with them: a posture anchored on a planned sole, whose COG has the reference velocity,
-// and the servo targets that make the robot follow.
+// Joint rates of the whole body for a velocity of the COG, (22)(23) and (28)(29), and the reference
+// body that every law moves with these rates. The reference body is a posture anchored on a planned
+// sole, whose COG has the reference velocity, with the servo targets that make the robot follow.
 
 #include <limits>
 #include <optional>
@@ -44,9 +44,9 @@ struct ResolverOptions {
   double damping = 1e-5;        ///< damping of J_U W^-1 J_U', as a multiple of trace / rows
   double angular_length = 0.2;  ///< length that makes angular rows comparable with linear ones [m]
   double speed_share = 0.98;    ///< share of a joint's speed limit that may be used
-  /// Deceleration with which a joint that turns brakes before its position limit [rad/s^2], and a
-  /// joint that slides [m/s^2]. If infinite, a joint stops in one tick when it is at the limit.
-  /// ReferenceBody sets both in each tick.
+  /// Deceleration with which a joint that turns brakes before its position limit [rad/s^2], and the
+  /// deceleration of a joint that slides [m/s^2]. If infinite, a joint stops in one tick when it is
+  /// at the limit. ReferenceBody sets both in each tick.
   double braking = std::numeric_limits<double>::infinity();
   double sliding_braking = std::numeric_limits<double>::infinity();
   UpperBodyTurn turn = {};  ///< turn of the trunk and the arms relative to their command
@@ -149,8 +149,8 @@ class ReferenceBody {
   void fly(const Eigen::Vector3d& tilt, const CommandSample& command, const CommandSample& next,
            const Eigen::VectorXd& offsets, ControlOutput& out);
 
-  /// What the position limits of the joints leave to the turn of the trunk, if COG and soles stay
-  /// as in the last tick; unlimited before the first tick.
+  /// The turn of the trunk that the position limits of the joints still allow, if COG and soles
+  /// stay as in the last tick. It is unlimited before the first tick.
   TurnRoom turn_room();
 
   /// Sets the turn of the trunk and the arms relative to their command from now on.

@@ -36,7 +36,7 @@ struct BodySphere {
 /// Where the sphere of a body is, and how it moves until the next coarse sample.
 struct BodyPlace {
   Eigen::Vector3d center;  ///< world [m]
-  double shift = 0;        ///< of the centre [m]
+  double shift = 0;        ///< movement of the centre [m]
   double turn = 0;         ///< upper bound of the angle of the turn [rad]
 };
 

@@ -55,8 +55,8 @@ RunOn swing_run_on(const RobotModel& model, const CommandSeries& series, Side si
                    const ContactInterval& contact, bool lands);
 
 /// Height at which a swing may continue, as a share of the height by which a supporting sole may
-/// float. Chosen: with a fifth (0.06 mm), a contact that begins 60 ms before the end of a slow
-/// swing is found, and in generated walks the height is at most 1e-12 m there (docs/attribution.md,
+/// float. Chosen: with a fifth (0.06 mm), the check finds a contact that begins 60 ms before the
+/// end of a slow swing. In generated walks, this height is at most 1e-12 m (docs/attribution.md,
 /// "Contacts that begin in the air"). No measured case changes between half and twice the value
 /// (constants.md).
 inline constexpr double kRunOnShare = 0.2;

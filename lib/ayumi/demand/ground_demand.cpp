@@ -101,8 +101,9 @@ void clip(const std::vector<Vector2d>& polygon, const Vector2d& point, const Vec
   }
 }
 
-// Integral of |r| over the triangle (0, a, b): with h the distance of the line ab from the origin
-// and phi the angle from its foot, h^3/6 [sec tan + asinh(tan)], tan = coordinate along ab / h.
+// Integral of |r| over the triangle (0, a, b). With the distance h of the line ab from the origin,
+// and the angle phi from the foot of the perpendicular, it is h^3/6 [sec phi tan phi + asinh(tan
+// phi)] between both ends, where tan phi is the coordinate along ab divided by h.
 double distance_integral(const Vector2d& a, const Vector2d& b) {
   const Vector2d along = (b - a).normalized();
   const double h = cross(a, along);

@@ -14,9 +14,9 @@ namespace ayumi {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
-/// The place where the robot stands: the plane of the supporting soles (with their mean origin and
-/// mean normal; for feet at different heights, a plane between them) and the convex hull of the
-/// soles in this plane.
+/// The place where the robot stands: the plane of the supporting soles, and the convex hull of the
+/// soles in this plane. The plane has the mean origin and the mean normal of the soles; if the feet
+/// are at different heights, it is between them.
 struct SupportPlane {
   Eigen::Isometry3d frame = Eigen::Isometry3d::Identity();  ///< z is the normal
   ConvexPolygon polygon;                                    ///< polygon in its x y plane [m]
@@ -33,8 +33,8 @@ SupportPlane support_plane(const RobotModel& model, Support support,
 Vector6d plane_wrench(const SupportPlane& plane, const Eigen::Vector3d& base_position,
                       const Vector6d& base_wrench);
 
-/// A matrix of edges x 6: its product with plane_wrench is f_n (distance of the ZMP inside each
-/// edge) [N m].
+/// A matrix of edges x 6. Its product with plane_wrench() is f_n times the distance of the ZMP
+/// inside each edge [N m].
 Eigen::Matrix<double, Eigen::Dynamic, 6> support_rows(const SupportPlane& plane);
 
 /// Share of the weight above which the ZMP of the ground force has a meaning. Chosen: below it,
@@ -62,8 +62,9 @@ GroundDemand ground_demand(const SupportPlane& plane, const Vector6d& plane_wren
                            double min_force);
 
 /// The lever of the yaw moment that friction can resist without moving the ZMP [m]. It is the mean
-/// distance from the ZMP over the largest part of the polygon that is symmetric about it, with an
-/// even pressure. It is a lower bound of what is possible, and 0 outside the polygon.
+/// distance from the ZMP over the largest part of the polygon that is symmetric about the ZMP, for
+/// an even pressure. The result is a lower bound of the possible lever. It is 0 if the ZMP is
+/// outside the polygon.
 double torsional_friction_arm(const ConvexPolygon& polygon, const Eigen::Vector2d& zmp);
 
 /// The ground wrench shared between the feet, each about the base origin (force, moment), by Side.

@@ -20,8 +20,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// The velocity, per unit rate of joint i, of the point p (from the base origin) fixed to what the
-/// joint moves, and the turn of that part.
+/// The velocity and the angular velocity per unit rate of joint i, for a point p that is fixed to
+/// the part that the joint moves. p is relative to the base origin.
 struct PointRate {
   Vector3d linear, angular;
 };

@@ -19,8 +19,8 @@ struct PostureTarget {
   /// How firmly each sole keeps its place, by Side: 1 for a sole that carries, down to 0 in the
   /// middle of a swing. It only counts where legs have fewer than six joints.
   std::array<double, 2> hold = {1, 1};
-  /// Whether the nearest posture with knees bent the right way is wanted where the target is only
-  /// reached with a knee bent the other way.
+  /// Whether the nearest posture with knees bent in the right direction is wanted if the target is
+  /// only reached with a knee bent in the other direction.
   bool nearest = false;
 };
 
@@ -36,7 +36,7 @@ struct PostureSolution {
   double turned = 0;   ///< angle of that foot from its planned attitude [rad]; 0 when reached
   std::array<double, 2> miss = {0, 0};  ///< distance of each sole from its place, by Side [m]
   int at_limit = -1;  ///< joint of that leg that is at its position limit; -1 if there is none
-  bool knee_flipped = false;  ///< the target is reached, but a leg is bent the other way
+  bool knee_flipped = false;  ///< the target is reached, but a leg is bent in the other direction
 };
 
 /// Distance by which soles may miss their places, and the same number of radians, where legs have
@@ -59,10 +59,10 @@ inline double lacking_tolerance(double hold) {
 
 class InverseKinematics {
  public:
-  /// `reference` is a posture whose legs bend the right way. The knee of a straight leg bends as a
-  /// human knee does, so that it comes forward, if the limits of the leg leave room for it;
-  /// otherwise it bends the other way. Throws Error(bad_model) for a robot without soles or with a
-  /// foot as root.
+  /// `reference` is a posture whose legs bend in the right direction. The knee of a straight leg
+  /// bends as a human knee does, so that it comes forward, if the limits of the leg leave room for
+  /// it; otherwise it bends in the other direction. Throws Error(bad_model) for a robot without
+  /// soles or with a foot as root.
   InverseKinematics(const RobotModel& model, const Eigen::VectorXd& reference);
 
   /// The solved joints of a leg, at most six. A waist above both legs is not solved.
@@ -81,7 +81,7 @@ class InverseKinematics {
   bool positive_bends_forward(Side side) const { return forward_[static_cast<int>(side)] > 0; }
   bool solves(int dof) const { return solved_[dof]; }
 
-  /// A posture with legs bent the right way and the other joints as in the reference.
+  /// A posture with legs bent in the right direction and the other joints as in the reference.
   const Eigen::VectorXd& start() const { return start_; }
 
   /// Newton's method on base position and leg joints, which starts from `state`. Other joints are
@@ -146,8 +146,8 @@ class InverseKinematics {
   std::array<double, 2> forward_ = {0, 0};
   Eigen::VectorXd start_;
   double largest_bend_rate_ = 0;  ///< largest change of the determinants below per radian
-  /// Determinants of the leg Jacobians in the reference posture, by Side. Legs that bend the right
-  /// way have determinants with these signs.
+  /// Determinants of the leg Jacobians in the reference posture, by Side. Legs that bend in the
+  /// right direction have determinants with these signs.
   std::array<double, 2> bend_ = {0, 0};
 };
 

@@ -14,9 +14,9 @@ struct ReachSolution {
   double missing = 0;  ///< distance of the point from its place [m]
 };
 
-/// Bodies at which the limbs end: bodies that carry no other body, and bodies from which several
-/// chains of joints, such as fingers, branch off that are all less than half as long as the limb up
-/// to this body.
+/// Bodies at which the limbs end. These are bodies that carry no other body, and bodies from which
+/// several chains of joints, such as fingers, branch off. All these chains must be less than half
+/// as long as the limb up to this body.
 std::vector<int> limb_ends(const RobotModel& model);
 
 /// The joints that move this body and no other end of a limb, listed from the body towards the

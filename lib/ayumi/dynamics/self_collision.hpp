@@ -8,16 +8,17 @@
 
 namespace ayumi {
 
-/// What a mesh is replaced by: its bounding box, so that no clearance is overestimated, or, for
+/// The shape that replaces a mesh: its bounding box, so that no clearance is overestimated, or, for
 /// contacts, the convex hull of its outer vertices (mesh_hull.hpp).
 enum class MeshAs { box, hull };
 
 /// The collision shapes of a robot, prepared for use, and the pairs of bodies to examine. A foot
 /// without collision shapes has a thin box above its sole, because a sole is solid: the check finds
 /// soles that overlap, and in the simulator such soles push each other. These pairs are left out:
-/// shapes of one body; parent and child; pairs that the robot says to ignore; pairs that overlap in
-/// the home posture (touching is not overlapping); and pairs up to three joints apart that are
-/// nearer than 5 mm in the home posture (housings of one compound joint, made to pass each other).
+/// shapes of one body; parent and child; pairs that the sidecar says to ignore; pairs that overlap
+/// in the home posture (touching is not overlapping); and pairs up to three joints apart that are
+/// nearer than 5 mm in the home posture. Bodies of the last kind are housings of one compound
+/// joint, which are made to pass each other.
 class CollisionModel {
  public:
   explicit CollisionModel(const RobotModel& model, MeshAs mesh_as = MeshAs::box);

@@ -35,8 +35,8 @@ struct ForwardDynamicsDerivatives {
 
 class TreeDynamics {
  public:
-  /// `model` must outlive this object. Throws Error(usage) if the processor lacks the instruction
-  /// set asked for.
+  /// `model` must outlive this object. Throws Error(usage) if the processor lacks the requested
+  /// instruction set.
   explicit TreeDynamics(const RobotModel& model, InstructionSet set = InstructionSet::best);
 
   const char* instruction_set() const { return kernels_->name; }

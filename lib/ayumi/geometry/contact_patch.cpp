@@ -2,8 +2,8 @@
 // is the reference face, and the other shape touches it with its nearest face, edge or corner.
 // Projected along the reference face's normal, both overlap in a convex polygon, whose corners are
 // corners of either shape or crossings of edges. The ids of the points come from these corners and
-// edges, so that a solver recognises a point in the next step. Of two points closer than kSame the
-// first one is kept.
+// edges, so that a solver recognises a point in the next step. If two points are closer to each
+// other than kSame, only the first one is kept.
 #include "ayumi/geometry/contact_patch.hpp"
 
 #include <algorithm>

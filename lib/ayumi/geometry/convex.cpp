@@ -238,10 +238,10 @@ class Polytope {
     return best;
   }
 
-  // Replaces the faces that the vertex sees by faces between the vertex and their rim. If rounding
-  // makes some faces of one plane visible and others hidden, the rim is not a simple loop, and the
-  // number of faces would grow without limit. In this case, only faces that are seen from a larger
-  // distance count. Returns false if there is no simple rim.
+  // Replaces the faces that are visible from the vertex by faces between the vertex and their rim.
+  // If rounding makes some faces of one plane visible and others hidden, the rim is not a simple
+  // loop, and the number of faces would grow without limit. In this case, only faces that are
+  // visible from a larger distance are replaced. Returns false if there is no simple rim.
   bool replace_visible(int top) {
     // Distances of the vertex from the plane of a face beyond which it sees the face [m].
     for (const double seen_from : {1e-13, 1e-11, 1e-9}) {

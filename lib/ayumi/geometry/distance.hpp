@@ -2,8 +2,8 @@
 // Distance between two shapes: in closed form for spheres and capsules, for other pairs by the
 // Gilbert-Johnson-Keerthi algorithm and the expanding polytope (convex.hpp). A mesh is replaced by
 // its bounding box in its own axes, so that no clearance is overestimated; for contacts it is
-// replaced by the convex hull of its outer vertices (mesh_hull.hpp). Directions: a normal of a pair
-// points from a to b.
+// replaced by the convex hull of its outer vertices (mesh_hull.hpp). The normal of a pair points
+// from a to b.
 
 #include <Eigen/Geometry>
 

@@ -39,7 +39,8 @@ double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
 
 /// Whether the line through two points certainly runs through the inside of the hull: every plane
 /// that contains the line has a point more than `flat` on each of its sides, so no face of the hull
-/// has both points. Along the line, three points are searched for whose triangle surrounds it.
+/// has both points. The function searches for three points whose triangle surrounds the line, as
+/// seen along the line.
 bool surely_inside(const std::vector<Vector3d>& points, const Vector3d& origin,
                    const Vector3d& edge, double flat) {
   const double length = edge.norm();

@@ -27,14 +27,14 @@ struct HullFace {
 /// points.
 std::vector<HullFace> hull_faces(const std::vector<Eigen::Vector3d>& points);
 
-/// What of a mesh can touch other bodies.
+/// The part of a mesh that can touch other bodies.
 struct MeshHull {
   MeshHull() = default;
   explicit MeshHull(const TriangleMesh& mesh);
 
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< centre of the bounding box [m]
   std::vector<Eigen::Vector3d> vertices;             ///< outer_vertices() [m]
-  std::vector<Eigen::Vector3d> points;               ///< the vertices, seen from the centre [m]
+  std::vector<Eigen::Vector3d> points;               ///< the vertices relative to the centre [m]
   std::vector<HullFace> faces;                       ///< hull_faces() of the points
 };
 

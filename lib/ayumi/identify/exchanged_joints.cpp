@@ -16,16 +16,16 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Ratio of the distances from the command of another joint and from the own command, below which an
-// angle follows the other joint. Chosen: a servo that follows its own command is far nearer to it,
-// and zero offsets of two degrees are a quarter of the motion of a walking joint.
+// An angle follows the command of another joint if its distance from that command is below this
+// share of its distance from its own command. Chosen: a servo that follows its own command is far
+// nearer to it, and zero offsets of two degrees are a quarter of the motion of a walking joint.
 constexpr double kFarBetter = 0.25;
 
 // Time between the compared rows [s]. Chosen: joints of walks move for tenths of a second.
 constexpr double kExchangeStep = 0.01;
 
-// Time between two answers that are tried [s]. Chosen: the answer of a servo is then at most 4 ms
-// from one of them, in which a joint of a walk (2 rad/s) moves by half a degree.
+// Step between the delays of a response that are tried [s]. Chosen: the delay of a servo is then at
+// most 4 ms from one of them. In this time, a joint of a walk (2 rad/s) moves by half a degree.
 constexpr double kAnswerStep = 0.008;
 
 // Both tables at the same times; columns are joints.
@@ -54,8 +54,8 @@ double rms(const VectorXd& values) {
 
 VectorXd without_mean(const VectorXd& values) { return values.array() - values.mean(); }
 
-// The distance of an angle from its own command, whatever its zero and its sign are: a wrong sign
-// is another mistake.
+// The distance of an angle from its own command. A wrong zero and a wrong sign do not count,
+// because they are other mistakes.
 double own_distance(const Rows& rows, Index j) {
   const VectorXd m = without_mean(rows.measured.col(j)), c = without_mean(rows.command.col(j));
   return std::min(rms(m - c), rms(m + c));

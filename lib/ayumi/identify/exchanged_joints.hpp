@@ -1,5 +1,5 @@
 #pragma once
-// Finds joints whose measured angles stand in each other's columns.
+// Finds joints whose measured angles are in each other's columns.
 
 #include <string>
 #include <vector>

@@ -61,8 +61,8 @@ constexpr double kLeastCompliance = 1e-6;
 
 // Largest possible lag of a servo: a time [s], and a multiple of the lag that the robot's file
 // states; the larger of the two is used. Chosen: soft servos of small humanoids have up to 20 ms. A
-// recording with a larger lag is shifted, and it is refused; with half of the value, soft servos
-// would be refused.
+// recording with a larger lag counts as shifted in time and is refused. With half of the value,
+// recordings of soft servos would be refused.
 constexpr double kSlowServo = 0.03, kSlowerThanStated = 2;
 
 // Time by which the lag must exceed that of the robot's file before the recording counts as
@@ -82,11 +82,11 @@ constexpr double kCogError = 0.002;
 constexpr double kFlankTorque = 0.05;
 
 // Twice the logarithm of the likelihood ratio of two laws of a servo, above which the recording
-// shows which of them holds. Chosen: five standard deviations, squared.
+// shows which of them is the law of the servo. Chosen: five standard deviations, squared.
 constexpr double kLawSeen = 25;
 
-// Share of the residual of a law below which the answers of two laws count as equal. Chosen: the
-// steps in which an answer is integrated change it by up to a tenth. Synthetic servos for which an
+// Share of the residual of a law below which the responses of two laws count as equal. Chosen: the
+// steps in which a response is integrated change it by up to a tenth. Synthetic servos for which an
 // earlier version chose the wrong law had 0.005 to 0.12, others 0.25 or more.
 constexpr double kSameAnswer = 0.15;
 
@@ -160,13 +160,13 @@ bool load_changes_sign(const std::vector<JointRecording>& joints) {
   });
 }
 
-// Whether the recording shows that `a` holds and `b` does not.
+// Whether the recording shows that `a` describes the servo and `b` does not.
 bool fits_better(const ServoFit& a, const ServoFit& b) {
   return 2 * a.independent * elementary::log(b.rms / a.rms) > kLawSeen;
 }
 
-// The same for two laws of the servo's behaviour between two commands: their answers must differ by
-// clearly more than that part of the residual of the better law that is not noise.
+// The same for two laws of the servo's behaviour between two commands: their responses must differ
+// by clearly more than that part of the residual of the better law that is not noise.
 bool shows_law(const ServoFit& a, const ServoFit& b) {
   return fits_better(a, b) &&
          rms_between(a, b) > std::max(kBeyondErrors * a.model_error, kSameAnswer * a.rms);
@@ -233,10 +233,11 @@ void take_standing_stiffness(const std::vector<JointRecording>& joints, double l
   type.standing = standing;
 }
 
-// A servo may hold each command until the next one, or move from one to the other. `gradual` says
-// that it moves, because other joints show it. Otherwise, if the recording shows the difference,
-// the better law is taken. If it does not, the delay is uncertain, because it would be half an
-// interval shorter for a servo that holds. The result is then the mean of both delays.
+// A servo may hold each command until the next one, or move gradually from one command to the next.
+// `gradual` says that it moves gradually, because other joints show it. Otherwise, if the recording
+// shows the difference, the better law is taken. If it does not, the delay is uncertain, because it
+// would be half an interval shorter for a servo that holds. The result is then the mean of both
+// delays.
 TypeFit fit_type(std::vector<JointRecording> joints, double longest_delay, double weight,
                  bool gradual) {
   const std::vector<ServoConstants> guess = first_guess(joints, longest_delay);
@@ -383,9 +384,9 @@ class Advice {
   const ServoFit& fit_;
 };
 
-// Rows in which the share of the load on the leg's own foot has been above kLoaded, or below 1
-// minus kLoaded, and stays there: they are in the middle of a stretch of kSettle. The load of a leg
-// then does not depend on how the feet share the weight.
+// Rows in the middle of an interval of the length kSettle in which the share of the load on the
+// leg's own foot stays above kLoaded, or stays below 1 minus kLoaded. The load of a leg then does
+// not depend on how the feet share the weight.
 std::vector<Index> settled_rows(const VectorXd& own, double dt) {
   const auto half = static_cast<Index>(std::ceil(0.5 * kSettle / dt));
   const auto kind = [&](Index k) { return own[k] > kLoaded ? 1 : own[k] < 1 - kLoaded ? -1 : 0; };
@@ -410,10 +411,10 @@ VectorXd own_share(const RobotModel& model, const JointLoads& loads, int dof) {
   return {};
 }
 
-// The change of the measured angle from the unloaded to the loaded foot. It is the slope of a
-// straight line, fitted by least squares to the difference between the angle and the delayed
-// command as a function of the load share of the leg's own foot, in the rows in which one foot
-// carries the robot. The stiffness is not needed.
+// The change of the measured angle from the unloaded to the loaded foot. Over the rows in which one
+// foot carries the robot, the difference between the angle and the delayed command is taken as a
+// function of the load share of the leg's own foot. The change is the slope of a straight line
+// through it by least squares. The stiffness is not needed.
 void find_sag(const JointRecording& recording, IdentifiedJoint& joint) {
   double x = 0, y = 0, xx = 0, xy = 0, n = 0, least = 1, most = 0;
   for (const Index k : recording.settled) {

@@ -64,14 +64,15 @@ struct Identification {
 };
 
 /// Throws Error(bad_file) "`place`: what" for a recording that cannot be that of this command: a
-/// joint does not follow, counters wrap, all values are zero, or an answer comes too late or too
-/// early.
+/// joint does not follow, counters wrap, all values are zero, or a response comes too late or too
+/// early. Throws Error(usage) for an option or a rate out of range, and Error(solver) if the fit of
+/// a servo fails.
 Identification identify(const RobotModel& model, const RecordedMotion& motion,
                         const IdentifyOptions& options, const std::string& place,
                         const Progress& progress = {});
 
-/// The time by which an answer may be behind its command [s]. If it comes later, the recording is
-/// shifted.
+/// The longest time by which a response may be behind its command [s], if the options state none. A
+/// recording with a longer lag is refused as shifted in time.
 double longest_lag(const RobotModel& model);
 
 /// Motor types, by dof: joints with the same limits and servo have the same type. A type has the

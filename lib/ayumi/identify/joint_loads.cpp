@@ -26,9 +26,9 @@ namespace {
 // torque of a leg by less than 0.05 N m.
 constexpr double kLoadCutoff = 50;
 
-// Frequency below which the difference between a joint and its delayed command changes [Hz].
-// Chosen: weight and friction change it more slowly, and the noise of an encoder beyond this
-// frequency does not become a torque.
+// Cut-off frequency of the low pass of the difference between a joint and its delayed command [Hz].
+// Chosen: weight and friction change this difference more slowly, and the noise of an encoder
+// beyond this frequency does not become a torque.
 constexpr double kSagCutoff = 15;
 
 // The load of a standing leg is not known well if its quick part exceeds this share of the largest
@@ -155,9 +155,9 @@ class LoadsOnFeet {
   std::vector<Support> supports_;
 };
 
-// The motion of a joint that has a command: the command with the mean delay of the answer, plus the
-// smoothed difference of the answer from it. In this way, two differentiations do not amplify the
-// noise of an encoder much.
+// The motion of a joint that has a command: the command with the mean delay of the response, plus
+// the smoothed difference of the response from it. In this way, two differentiations do not amplify
+// the noise of an encoder much.
 VectorXd smooth_motion(const RecordedMotion& motion, Index dof) {
   const AngleTable &measured = motion.measured, &command = motion.command;
   const VectorXd answer = measured.theta.col(dof);

@@ -29,7 +29,8 @@ struct JointLoads {
   /// Share of the ground's load on the left foot; empty if the root is fixed.
   Eigen::VectorXd left_share;
   std::vector<Support> support;  ///< support by row; empty if the root is fixed
-  /// The mean share of the standing foot in single support by the load cells; 1 without load cells.
+  /// The mean share of the load that the load cells measure on the standing foot in single support;
+  /// 1 without load cells.
   double agreement = 1;
 };
 

@@ -28,14 +28,15 @@ constexpr Index kSurroundingRows = 50;
 constexpr double kMostLeft = 0.75;
 
 // Smallest size of a step, in its standard deviations. Chosen: in a recorded walk of 17902 rows
-// without a lost row, steps that are near a whole number of rows reach less than half of it.
+// without a lost row, steps that are near a whole number of rows reach less than half of this size.
 constexpr double kClearStep = 5;
 
 // After a lost row, all further rows are too early, so the change of the delay lasts. The constants
-// are: the time on both sides of a step in which the delays are compared [s], the shortest such
-// time, the smallest lasting change in rows, and its largest difference from the step, in rows and
-// as a part of the step. Chosen: recorders take some rows up to 0.45 rows late and the next ones in
-// time again, and joints begin to slide within a row, which does not last.
+// are, in this order: the time on both sides of a step in which the delays are compared [s]; the
+// shortest such time [s]; the smallest lasting change [rows]; its largest difference from the step
+// [rows]; and this difference as a part of the step. Chosen: recorders record some rows up to 0.45
+// rows late and the next rows on time again, and joints may begin to slide within a row. Neither
+// change lasts.
 constexpr double kLastingTime = 0.75, kLeastLastingTime = 0.3;
 constexpr double kLeastStep = 0.6, kStepMargin = 0.35, kStepShare = 0.25;
 
@@ -46,8 +47,8 @@ constexpr size_t kMostSteps = 60;
 // rounded. Derived: rounding alone has a standard deviation of 0.29 steps.
 constexpr double kLeastNoise = 0.29, kLeastNoiseAngle = 1e-7;
 
-// Length of the windows in which the delay of the answer is followed [s], and a change of the delay
-// that only missing or repeated rows explain [s]. Chosen: a motion has all its rates within a
+// Length of the windows in which the delay of the response is estimated [s], and a change of the
+// delay that only missing or repeated rows explain [s]. Chosen: a motion has all its rates within a
 // window, and the change is far beyond the effect of friction and load on the mean of several
 // windows.
 constexpr double kDelayWindow = 1.5, kDelayJump = 0.003;
@@ -153,8 +154,8 @@ RowStep row_step(const std::vector<FollowingJoint>& joints, Index k,
 
 // A constant, a slope and a delay of each joint are fitted to the differences around row k. Returns
 // the part of the residual that is left if `lost` rows are lost as well; the noise is subtracted
-// from both residuals. For the answer of servos to a sudden move, most of the residual is left.
-// Such an answer looks like a step for a few rows, and it looks the same for all joints that make
+// from both residuals. For the response of servos to a sudden move, most of the residual is left.
+// Such a response looks like a step for a few rows, and it looks the same for all joints that make
 // the move.
 double left_around(const std::vector<FollowingJoint>& joints, Index k, double lost) {
   double without = 0, with = 0;

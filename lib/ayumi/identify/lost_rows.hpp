@@ -1,11 +1,11 @@
 #pragma once
 // Rows that a recording lost or repeated. If a file does not say when each row was measured, all
-// that follows such a row comes earlier or later than before. Every moving joint shows this at
-// once. Let p be the command, delayed as the recording is. The differences e = theta - p of all
-// joints j then step by n dt p'_j, where n is the number of lost rows. Least squares over the
-// surrounding rows give n and its standard deviation. If nothing moves there, the delays before and
-// after show the step, for each joint that moves on both sides: joints with different servos have
-// different delays.
+// rows after such a place seem to come too early or too late. Every moving joint shows this step at
+// the same time. Let p be the command, delayed as the recording is. The differences e = theta - p
+// of all joints j then step by n dt p'_j, where n is the number of lost rows. Least squares over
+// the surrounding rows give n and its standard deviation. If nothing moves there, the delays before
+// and after show the step, for each joint that moves on both sides: joints with different servos
+// have different delays.
 
 #include <string>
 #include <vector>
@@ -21,7 +21,7 @@ double angle_at(const AngleTable& table, Eigen::Index dof, double t);
 struct LostRows {
   bool found = false;
   bool exact = false;    ///< the row is known, not only its neighbourhood
-  Eigen::Index row = 0;  ///< the first row after them, counted from 0
+  Eigen::Index row = 0;  ///< the first row after the lost rows, counted from 0
   double rows = 0;       ///< number of lost rows; negative if rows are repeated
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Checks whether a recording can be the answer to a command.
+// Checks whether a recording can be the response to a command.
 
 #include <string>
 #include <vector>

@@ -44,7 +44,7 @@ double rms_error(const std::vector<JointRecording>& joints,
                  const std::vector<ServoConstants>& constants);
 
 /// Fits the constants, beginning at `start`; those in `held` keep the value of the start. The
-/// covariance also holds for residuals that are correlated in time: their scores are summed over
+/// covariance is also valid for residuals that are correlated in time: their scores are summed over
 /// blocks longer than that correlation.
 ServoFit fit_servo(const std::vector<JointRecording>& joints,
                    const std::vector<ServoConstants>& start,

@@ -87,7 +87,8 @@ void respond(const JointRecording& recording, const ServoConstants* c, Eigen::Ma
   const bool stepped = recording.law == CommandLaw::stepped;
   const int steps =
       stepped ? 1 : std::max(1, static_cast<int>(std::ceil(recording.dt / kResponseStep - 1e-9)));
-  // The place is the middle of a step, or its end.
+  // The share of a step at which the equations hold: the middle for the implicit midpoint rule, the
+  // end for implicit Euler.
   const double place = stepped ? 1 : 0.5;
   const double h = recording.dt / steps;
   for (const Stretch& stretch : stretches(recording)) {

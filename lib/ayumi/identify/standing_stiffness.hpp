@@ -15,8 +15,9 @@ struct StandingCompliance {
   double value = 0, half_width = 0;  ///< the value with half its 95 % interval [rad/(N m)]
 };
 
-/// The compliance of joints that share their constants, whose answers are `lag` [s] behind, from
-/// their settled rows. `load_error` is the uncertainty of the torque of a standing leg [N m].
+/// The compliance of joints that share their constants and lag behind their commands by `lag` [s],
+/// from the rows in which one foot carries the robot (JointRecording::settled). `load_error` is the
+/// uncertainty of the torque of a standing leg [N m].
 StandingCompliance standing_compliance(const std::vector<JointRecording>& joints, double lag,
                                        double load_error);
 

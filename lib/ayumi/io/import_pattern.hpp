@@ -19,8 +19,8 @@ namespace ayumi {
 inline constexpr size_t kLargestMotionFile = 64'000'000;
 
 struct PatternImport {
-  /// Bounds of the ramp, where it is not 0. Chosen: 20 ms are a row of most recordings, and a robot
-  /// that speeds up for 10 s does another motion.
+  /// Bounds of the ramp, where it is not 0. Chosen: rows of most recordings are 20 ms apart, and a
+  /// robot that speeds up for 10 s does another motion.
   static constexpr Bounds kRamp = {0.02, 10, "s"};
 
   ImportOptions reading = {};

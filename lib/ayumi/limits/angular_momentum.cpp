@@ -1,7 +1,7 @@
-// In flight no moment acts, so the angular momentum L about the COG is constant: dL/dt = 0, where
-// dL/dt is the moment of the demanded ground wrench about the COG. The rate of a single sample
-// contains the rounding of differences, so the mean over five samples is judged. A repair keeps
-// this limit together with the force, in the rows of free_fall.cpp.
+// In flight no external moment acts, so the angular momentum L about the COG is constant, dL/dt =
+// 0. Here, dL/dt is the moment of the demanded ground wrench about the COG. The rate of a single
+// sample contains the rounding of differences, so the mean over five samples is judged. A repair
+// keeps this limit together with the force, in the rows of free_fall.cpp.
 #include <algorithm>
 
 #include "ayumi/limits/flight_moment.hpp"

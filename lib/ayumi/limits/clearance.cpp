@@ -14,8 +14,8 @@ namespace ayumi {
 namespace {
 
 // Clearance below which bodies that do not overlap are a warning [m]. Chosen: the sag of servos
-// under load moves links by about this distance. Half or twice of it changes no verdict. With half
-// of the value, the clearance of the case "fast" changes from 12.1 to 11.1 mm; with twice, the
+// under load moves links by about this distance. Half or twice the value changes no verdict. With
+// half of the value, the clearance of the case "fast" changes from 12.1 to 11.1 mm; with twice, the
 // clearance of the case "grip" changes from 12.2 to 14.6 mm.
 constexpr double kClearanceTolerance = 0.002;
 

@@ -4,7 +4,8 @@
 //   |f_z - commanded|.
 // The point mass gap is the distance between the ZMP of the mass-concentrated model, equations (14)
 // and (15) of the paper, and the commanded ZMP. It shows how good that model is here, and is never
-// an error. In flight nothing pushes, whatever the motion is: the commanded force must be zero.
+// an error. In flight no ground force acts, whatever the motion is, so the commanded force must be
+// zero.
 #include <algorithm>
 
 #include "ayumi/base/text.hpp"

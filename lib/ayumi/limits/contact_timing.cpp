@@ -1,8 +1,8 @@
 // A contact ends when its foot leaves the ground. A foot that stands longer violates no law of
 // mechanics if the ZMP is over the other foot, but then the planned phases are not those of the
-// motion. The time at which the foot began to leave follows from the times t1 and t2 at which its
-// sole is 0.01 and 0.08 mm off its place: it is 2 t1 - t2 if the height grows with the cube of time
-// (demand/contact_plan.hpp, samples_after_contact()).
+// motion. The time at which the foot began to leave is 2 t1 - t2, where t1 and t2 are the times at
+// which its sole is 0.01 and 0.08 mm off its place. This holds if the height grows with the cube of
+// time (demand/contact_plan.hpp, samples_after_contact()).
 #include "ayumi/base/text.hpp"
 #include "ayumi/limits/judged_motion.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 // A finding is one result of the check of a motion: its kind, its place and time, its size, and a
-// remedy. Kind and place are typed; their texts are for people only.
+// remedy. Programs use the types of kind and place; the texts are for people only.
 
 #include <array>
 #include <optional>

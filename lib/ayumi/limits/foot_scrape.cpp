@@ -1,18 +1,20 @@
 // A swinging sole that moves along the ground must be above it, because the friction of a sole that
-// scrapes the ground trips the robot. Each corner x of the sole is judged on its own way, because a
-// sole that rolls over its heel or its toe moves, but the corner on the ground does not. With the
-// places in which the foot stood and will stand, where the corner is at v, and their normals n,
+// scrapes the ground trips the robot. Each corner x of the sole is judged by its own path, because
+// a sole that rolls over its heel or its toe moves, but the corner on the ground does not. The foot
+// stood in one place and will stand in another place. With the position v of the corner in such a
+// place, and the normal n of the place,
 //   height = n . (x - v),   way = |x - v| along the ground.
-// The height over the lower of both places counts: the edge of a step between them is not known.
-// A stretch is a series of samples in which the corner is lower than the tolerance, so that it is
-// on the ground like a corner of a standing sole. In it, the corner may be as far from where it is
-// at rest as a standing sole may slip. It is at rest
+// The height over the lower one of the two places is judged, because the edge of a step between
+// them is not known. A stretch is a series of samples in which the corner is lower than the
+// tolerance, so that it is on the ground like a corner of a standing sole. In a stretch, the
+// distance of the corner from its place of rest may be at most the slip that a standing sole may
+// have. The corner is at rest
 //   - in the place of lift-off, if the stretch begins with the swing,
 //   - in the place of landing, if the stretch ends with the swing,
 //   - where it came down, if the stretch does neither.
-// So nothing is asked of a foot that lifts off, that lands, that rolls, or that rests on or just
-// over the ground without a load. In flight, no foot carries the robot, and nothing is asked
-// either.
+// So this limit requires nothing of a foot that lifts off, that lands, that rolls, or that rests on
+// or just over the ground without a load. In flight, no foot carries the robot, and the limit
+// requires nothing, either.
 #include "ayumi/limits/foot_scrape.hpp"
 
 #include <algorithm>
@@ -36,16 +38,16 @@ namespace {
 
 // Smallest height of a corner of a swinging sole that moves along the ground [m]. Chosen: up to
 // this height, the check takes a standing sole to be on the ground (kFloatTolerance of stance.cpp),
-// for every robot; so a corner that is lower and moves is one that slips. How high a foot has to
-// pass so that no real robot trips depends on its servos, and a simulation shows it. Measured: a
-// walk of SR1 with a lift of 0.4 mm falls in a simulation, and stands with 0.6 mm; the check finds
-// its scraping feet up to 1.5 mm. Four smaller robots stand with 0.4 mm, too, so the limit is not
-// too low (docs/measurements/repair.md). A planned
-// swing of 60 mm (plan/foot_plan) meets the limit with a lift of 1 mm, one of 400 mm with 2.3 mm:
-// at the distance of the slip that is allowed, a longer swing has risen by a smaller share of its
-// lift. No bundled pattern and no default of `ayumi new` has a finding with half of the value, with
-// twice, or with 1 mm. A walk of HOAP-1 with a lift of 0.6 mm has no finding with half; one of 1.5
-// mm has findings with twice.
+// for every robot. So a corner that is lower and moves slips. How high a foot has to pass so that
+// no real robot trips depends on its servos, and a simulation shows it. Measured: a walk of SR1
+// with a lift of 0.4 mm falls in a simulation, and stands with 0.6 mm; the check finds its scraping
+// feet up to 1.5 mm. Four smaller robots stand with 0.4 mm, too, so the limit is not too low
+// (docs/measurements/repair.md). A planned swing of 60 mm (plan/foot_plan) meets the limit with a
+// lift of 1 mm, and a swing of 400 mm with 2.3 mm: at the distance of the slip that is allowed, a
+// longer swing has risen by a smaller share of its lift. No bundled pattern and no default of
+// `ayumi new` has a finding with half of the value, with twice, or with 1 mm. With half of the
+// value, a walk of HOAP-1 with a lift of 0.6 mm has no finding; with twice, a walk with a lift of
+// 1.5 mm has findings.
 constexpr double kScrapeTolerance = 0.0003;
 
 // Whether the other foot carries the robot while this foot swings.
@@ -173,7 +175,7 @@ void place_scrape_rows(RowSite& site) {
     // The scraping corners by sample and place.
     std::map<std::pair<int, int>, std::set<int>> corners;
     for (const CommandSeries* series : watched) {
-      std::map<int, Isometry3d> poses;  // of samples that were asked for
+      std::map<int, Isometry3d> poses;  // poses of the samples that were evaluated
       const auto pose_at = [&](int k) {
         const auto [pose, is_new] = poses.try_emplace(k, Isometry3d::Identity());
         if (is_new) {

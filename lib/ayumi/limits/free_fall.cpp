@@ -1,5 +1,5 @@
-// In flight nothing pushes, so the COG of the motion falls freely, ddcog = (0, 0, -g), and so does
-// the commanded COG, whose acceleration is the fourth-order second difference
+// In flight no ground force acts, so the COG of the motion falls freely, ddcog = (0, 0, -g), and so
+// does the commanded COG, whose acceleration is the fourth-order second difference
 //   (16 (c_-1 + c_1) - (c_-2 + c_2) - 30 c_0) / (12 dt^2)   (central differences, Taylor).
 // At the beginning and end of a flight, the speed may change, but the position may not: the step of
 // the COG between the two samples there is the mean of the steps before and after it.
@@ -72,8 +72,9 @@ Vector6d own_flight_wrench(const RowSite& site, int sample) {
 const RowKind kFlightRows = {
     .name = "flight", .unit = &RowPrices::length, .relaxed = &RowPrices::foot, .order = {4, 0}};
 
-// The band is a share of what the check allows, divided among three axes, or the motion's own value
-// if this passes. The deviation of one sample from the mean moment is rounding and is not changed.
+// The band is a share of the deviation that the check allows, divided among three axes. If the
+// motion's own value is small enough (own_share), the band reaches to this value. The deviation of
+// one sample from the mean moment is rounding and is not changed.
 void place_flight_rows(RowSite& site) {
   const auto& settings = site.settings.flight;
   const double weight = site.weight();

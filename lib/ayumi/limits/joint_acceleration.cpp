@@ -11,8 +11,8 @@ namespace ayumi {
 namespace {
 
 // Largest acceleration without a warning [rad/s^2] or [m/s^2]. Chosen: a jump of 0.03 degrees
-// between two samples at 1 kHz. It is only a warning, but attribution treats samples above it as
-// spoilt by a jump. With half of the value, the check of the case "arm" finds 1 warning of
+// between two samples at 1 kHz. It is only a warning, but attribution assumes a jump in samples
+// above it. With half of the value, the check of the case "arm" finds 1 warning of
 // joint_acceleration; with twice, the check of the case "flight" finds 8 warnings of
 // joint_acceleration instead of 13.
 constexpr double kRoughAcceleration = 500;

@@ -1,11 +1,10 @@
-// A motor has a peak torque: |tau| <= peak torque of the actuator profile, with tau from inverse
-// dynamics and the ground wrench shared between the feet, plus the rotor's inertia, viscous and
-// Coulomb friction of the servo (demand/ground_demand.hpp, motor_torques()). Stribeck and
+// A motor has a peak torque: |tau| <= peak torque of the actuator profile. tau follows from inverse
+// dynamics with the ground wrench shared between the feet, plus the rotor's inertia and the viscous
+// and Coulomb friction of the servo (demand/ground_demand.hpp, motor_torques()). Stribeck and
 // load-dependent friction are not included, nor the loss of torque with speed that the voltage
-// causes.
-// A joint without a motor (kp of its servo is 0) gives no torque, whatever its files state as its
-// peak. Near the beginning and end of a flight, accelerations have no meaning, so torques are not
-// judged there.
+// causes. A joint without a motor (kp of its servo is 0) gives no torque, whatever its files state
+// as its peak. Near the beginning and end of a flight, accelerations have no meaning, so torques
+// are not judged there.
 #include <algorithm>
 
 #include "ayumi/dynamics/inverse_dynamics.hpp"
@@ -22,8 +21,8 @@ constexpr double kWholeTorque = 1;
 
 // Torque that a joint without a motor may carry even if its stated dry friction is smaller: the
 // weight of the robot times this lever [m]. Chosen: a limp hand hangs and swings freely, and the
-// joints of a leg that stands on bent knees need 20 times as much. No measured case changes from
-// half to twice, because the robots there have motors in all joints.
+// joints of a leg that stands on bent knees need 20 times as much. No measured case changes between
+// half and twice the value, because the robots of these cases have motors in all joints.
 constexpr double kLimpLever = 1e-3;
 
 // The largest torque of a joint; infinite if nothing is known about it.

@@ -13,9 +13,9 @@
 
 namespace ayumi {
 
-/// Rounding changes a length that is met exactly by at most this [m]. Chosen: a thousandth of the
-/// smallest tolerance of a length, and far above the rounding of coordinates of metres (1e-15). No
-/// measured case changes between half and twice the value (constants.md).
+/// Because of rounding, a length that is kept exactly deviates by at most this [m]. Chosen: a
+/// thousandth of the smallest tolerance of a length, and far above the rounding of coordinates of
+/// metres (1e-15). No measured case changes between half and twice the value (constants.md).
 inline constexpr double kRounding = 1e-7;
 
 /// Violations of one kind and item that are nearer to each other than this are one finding [s].

@@ -96,7 +96,8 @@ struct FindingSpec {
   const char* unit = "";
   double tolerance = 0;      ///< default tolerance; patterns and `--tolerance` may set another one
   const char* meaning = "";  ///< meaning in the text of `check --tolerances`
-  /// The smallest default for a motion of one robot; null if the default holds for all motions.
+  /// The smallest default for a motion of one robot; null if the default is the same for all
+  /// motions.
   double (*least_tolerance)(const RobotModel&, const CommandSeries&) = nullptr;
   SummaryFigure figure = {};
   ActuatorNeedWords actuator = {};
@@ -173,6 +174,7 @@ using Tolerances = ByFindingKind<double>;
 /// Options of the check. Patterns and the command line may set single tolerances.
 struct CheckOptions {
   std::string profile;  ///< actuator profile; "" for the default of the robot
+  /// Friction coefficient of the ground.
   double friction = 0.8;
   std::map<std::string, double> tolerances;  ///< tolerances by the name of the kind
   int threads = 0;      ///< number of threads; 0 for all cores; results do not depend on it
@@ -180,7 +182,7 @@ struct CheckOptions {
 };
 
 /// The default tolerances, overridden by those that were set. Throws Error(usage) for an unknown
-/// name or a tolerance beyond kLargestNumber. A negative tolerance asks for a margin.
+/// name or a tolerance beyond kLargestNumber. A negative tolerance requires a margin.
 Tolerances tolerances(const CheckOptions& options);
 
 /// The tolerances for a motion of one robot: the default of angular_momentum grows with weight and

@@ -1,9 +1,9 @@
 #pragma once
-// The table of limits. One line for every kind of finding, in the order in which people read them
-// (`check --tolerances`, docs/cli.md): its name in JSON files, option values and texts, and the
-// limit that defines it, which is the file limits/LIMIT.cpp. A new limit is such a file and its
-// line here: the enum FindingKind, the names, and all visitors (check, repair, report, export)
-// follow.
+// The table of limits. It has one line for every kind of finding, in the order in which people read
+// them (`check --tolerances`, docs/cli.md). A line has the name of the kind in JSON files, option
+// values and texts, and the limit that defines it in the file limits/LIMIT.cpp. A new limit is such
+// a file and its line here: the enum FindingKind, the names, and all visitors (check, repair,
+// report, export) follow.
 
 // clang-format off
 #define AYUMI_FINDING_KINDS(line)               \

@@ -13,8 +13,7 @@ namespace {
 
 // Normal force below which contact is a warning, as a share of the weight. Chosen: if less than a
 // twentieth of the weight rests on the ground, friction and ZMP have little meaning. It is only a
-// warning; half or twice of it changes no verdict. No measured case changes between half and twice
-// the value (constants.md).
+// warning. No measured case changes between half and twice the value (constants.md).
 constexpr double kLeastNormalShare = 0.05;
 
 void judge_normal_force(JudgedMotion& motion, const JudgedSample& s) {

@@ -55,8 +55,9 @@ struct SoleRows {
 
 enum class JointQuantity { angle, speed, acceleration, motor_torque };
 
-/// One row: a factor times a quantity of one joint, [rad] or [m], per [s], [s^2], or [N m], [N].
-/// For an angle or a speed, its own rate times the time `lead` is added, as for servo targets.
+/// One row: a factor times a quantity of one joint. Before the factor, its unit is [rad] or [m],
+/// the same per [s] or [s^2], or [N m] or [N]. For an angle or a speed, its own rate times the time
+/// `lead` is added, as for servo targets.
 struct JointRow {
   JointQuantity of = JointQuantity::angle;
   int dof = 0;
@@ -92,8 +93,9 @@ using RowRule =
 
 // ---- common properties of rows
 
-/// The prices of violations in one unit, and the amounts that count as a violation of 1. The repair
-/// fills them from its policy.
+/// The prices of violations, and the units in which violations are measured. The price of a
+/// violation is its weight in the cost that the program minimizes. The repair fills in the values
+/// from its policy.
 struct RowPrices {
   double length = 0, angle = 0, share = 0;      ///< units: [m], [rad], 1
   double zmp_margin = 0, landing = 0, dcm = 0;  ///< prices of soft goals

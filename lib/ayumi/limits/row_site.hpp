@@ -1,6 +1,6 @@
 #pragma once
 // The data with which limits place their rows: the motion that is repaired, the samples at which
-// the program evaluates rows, the earlier results that decide which limits are near, and the
+// the program evaluates rows, the earlier results that show which limits are near, and the
 // distances that rows keep from the check's limits.
 
 #include <array>
@@ -43,7 +43,7 @@ struct CollocationPoint {
 std::array<Vector6d, 2> shared_load(const RobotModel& model, const CollocationPoint& point,
                                     const Eigen::Vector3d& base, const Vector6d& base_wrench);
 
-/// The requirements of a repair on the rows. The values, their reasons and their sources are in
+/// The values with which a repair places the rows. Their reasons and sources are in
 /// repair/policy.hpp.
 struct RowSettings {
   Trust trust = Trust::posture;
@@ -66,7 +66,7 @@ struct RowSettings {
 
   // Values for single limits, which are named by their files.
   struct {
-    double least = 0, safe = 0;  ///< margins inside the support [m]
+    double least = 0, safe = 0;  ///< smallest margin inside the support, and safe margin [m]
     /// Margin that is wanted near a margin below `least`; not less than `least` [m].
     double mended = 0;
     double safe_around = 0;  ///< time around a margin below `least` in which `mended` is wanted [s]
@@ -135,7 +135,7 @@ struct AngleRange {
 };
 
 /// The range of a row: `kept`, which is inside `allowed` by a distance that keeps the motion
-/// between two points inside, too. If the given value is between the two, the row only asks for
+/// between two points inside, too. If the given value is between the two, the row only requires
 /// this value. Otherwise, a joint that rests at its limit would have to move away from it.
 AngleRange range_with_given(AngleRange kept, const AngleRange& allowed, double given,
                             double tolerance);

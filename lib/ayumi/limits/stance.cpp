@@ -21,7 +21,7 @@ namespace {
 
 // Tolerance of slip [m]. Chosen: angles that are rounded to 0.1 degrees move the foot of a leg of
 // 0.3 m by 0.5 mm for each joint, and this is not a slip. With half of the value, the missing
-// safety of the case "slip" changes from 0 to 0.15; with twice, to 0.00881.
+// safety after the repair of the case "slip" changes from 0 to 0.15; with twice, to 0.00881.
 constexpr double kSlipTolerance = 0.002;
 // Tolerance of penetration [m]. Chosen: half of the slip that is allowed, because the stiffness of
 // the ground resists penetration. No measured case changes between half and twice the value
@@ -29,12 +29,12 @@ constexpr double kSlipTolerance = 0.002;
 constexpr double kDepthTolerance = 0.001;
 // Tolerance of floating [m]. Chosen: far above the rounding of planned contacts (1e-12 m in
 // generated walks), and far below the height of a sole 60 ms before the end of a usual swing. With
-// half of the value, the change of the case "early" changes from 0.0359 to 0.0652; with twice, to
-// 0.00515.
+// half of the value, the weighted change by the repair of the case "early" is 0.0652 instead of
+// 0.0359; with twice, it is 0.00515.
 constexpr double kFloatTolerance = 0.0003;
 
-// The depth of a sole below the ground of a swing, which is the lower of the places where the foot
-// stood and where it will stand.
+// The depth of a sole below the ground of a swing. This ground is the lower one of the two places
+// where the foot stood and where it will stand.
 double swing_depth(const JudgedMotion& motion, Side side, int k, const Eigen::Isometry3d& sole) {
   const int s = static_cast<int>(side);
   const int i = motion.plan.index[s][k];

@@ -14,7 +14,7 @@ namespace ayumi {
 namespace {
 
 // Margin below which a ZMP inside the support gets a warning, and smallest margin of a repaired
-// motion [m]. Chosen: a few hundredths of the width of small soles (5 cm). Half or twice of it
+// motion [m]. Chosen: a few hundredths of the width of small soles (5 cm). Half or twice the value
 // changes no verdict of a check. With half of the value, the largest yaw ratio of the case "fast"
 // changes from 0.375 to 0.423; with twice, the check of this case finds 3 warnings of
 // support_margin instead of 4.
@@ -65,9 +65,9 @@ std::vector<double> own_margins(const RowSite& site) {
 }
 
 // The margin that is wanted at every point. Where the ZMP of the motion is outside or too near an
-// edge, and for a while around this time, a repair wants the safe margin. Elsewhere it wants a
-// share of the own margin of the motion, but at most the safe margin. A step that begins with a
-// small margin does not become safe by a large margin at its end.
+// edge, and for a while around this time, a repair aims at the safe margin. Elsewhere it aims at a
+// share of the margin that the motion itself has, but at most at the safe margin. A step that
+// begins with a small margin does not become safe by a large margin at its end.
 std::vector<double> wanted_margins(const RowSite& site) {
   const auto& settings = site.settings.support;
   const double safe = std::max(settings.safe, settings.least);

@@ -1,6 +1,6 @@
-// A sole that comes down fast hits the ground: its speed along the normal n of its place is that of
-// the last step before contact, -(n . (p_k - p_k-1)) / dt; at the first sample in contact the plan
-// already stands still.
+// A sole that comes down fast hits the ground. Its speed along the normal n of its place is that of
+// the step from the last sample of the swing to the first sample k in contact, -(n . (p_k - p_k-1))
+// / dt. The rate at sample k itself is not used, because the plan already stands still there.
 //
 // A repair keeps a swinging sole over the ground, as the check does (stance.cpp), and has two soft
 // goals for it. In open loop, the servos sag, and a sole that arrives low or tilted touches down
@@ -28,8 +28,7 @@ using Eigen::VectorXd;
 namespace {
 
 // Largest landing speed without a warning [m/s]. Chosen: a fall from 1 mm reaches 0.14 m/s. It is
-// only a warning; half or twice of it changes no verdict. No measured case changes between half and
-// twice the value (constants.md).
+// only a warning. No measured case changes between half and twice the value (constants.md).
 constexpr double kLandingTolerance = 0.15;
 
 double landing_speed(const JudgedMotion& motion, Side side, const ContactInterval& contact) {

@@ -296,8 +296,8 @@ void add_to_report(SafetyReport& report, const std::vector<SafetyViolation>& vio
   report.safe = report.violations.empty();
 }
 
-// The ramp and the hold that the options require. A ramp that is too long is replaced by the
-// shortest one, whose steps are then violations.
+// The ramp and the hold that the options require. A ramp that is too long is replaced by a ramp of
+// the smallest duration (SafetyOptions::ramp), whose steps are then violations.
 LaidMotion laid(const RobotModel& model, const TargetRows& targets, const SafetyOptions& options) {
   require_within("the ramp of the table", options.ramp, SafetyOptions::kRest);
   require_within("the hold of the table", options.hold, SafetyOptions::kRest);

@@ -33,8 +33,9 @@ struct SafetyOptions {
   double rest_window = 0;   ///< time over which the speed is a mean [s]; with 0, one row
 };
 
-/// The options for an imported sequence whose rows are kept and which is already complete: it gets
-/// no ramp and no hold, and its speed at both ends is a mean, because its rows are whole counts.
+/// The options for an imported sequence whose rows are kept and which is already complete. It gets
+/// no ramp and no hold. Its speed at both ends is a mean over several rows, because its rows are
+/// whole counts.
 SafetyOptions as_it_is(SafetyOptions options);
 
 /// What a table must keep so that it may be sent to a robot.
@@ -92,8 +93,10 @@ struct SafeTable {
 };
 
 /// Adds ramp and hold to the motion and judges the result. The ramp has minimum jerk and is so long
-/// that no joint exceeds half its speed limit. Throws Error(bad_pattern) if there are no rows or if
-/// joints are not those of the robot, and Error(bad_model) for an unknown posture or profile.
+/// that no joint exceeds half its speed limit. Throws Error(bad_pattern) if there are no rows, if
+/// the joints are not those of the robot, if an angle is not finite, or if the ramp would last for
+/// more than an hour. Throws Error(usage) for a ramp or a hold outside kRest, and Error(bad_model)
+/// for an unknown posture or profile.
 SafeTable make_safe(const RobotModel& model, ReferenceTrajectory reference,
                     const SafetyOptions& options = {});
 
@@ -139,14 +142,15 @@ struct TargetRange {
 TargetRange target_range(const Dof& dof, double zero, double margin);
 
 /// The encoder counts of every row, rows x dof in the robot's joint order, with the encoder zeros
-/// of the profile of the options: the nearest whole count, or its neighbour (less than one count
-/// off) if only this neighbour keeps the position limits and count_step_limits(). Joints without an
-/// encoder give 0.
+/// of the profile of the options. A count is the nearest whole number, or its neighbour (less than
+/// one count off) if only this neighbour keeps the position limits and count_step_limits(). Joints
+/// without an encoder give 0.
 Eigen::MatrixXi encoder_counts(const RobotModel& model, const ReferenceTrajectory& table,
                                const SafetyOptions& options);
 
-/// The largest step in a tick, by dof, in counts: the smaller of the motor board's limit and the
-/// profile's speed limit; infinite for joints without an encoder.
+/// The largest step in a tick of `dt` [s], by dof, in whole counts: the smaller one of the motor
+/// board's limit and the profile's speed limit, rounded down. It is infinite for joints without an
+/// encoder.
 Eigen::VectorXd count_step_limits(const RobotModel& model, double dt, const SafetyOptions& options);
 
 /// The largest step in a tick of every joint in [rad] or [m]. For a joint without an encoder, only

@@ -30,8 +30,9 @@ double torsion_ratio(const GroundDemand& demand, double coefficient, double arm)
 double least_arm(const GroundDemand& demand) { return 2.0 / 3 * demand.margin; }
 
 // If the foot slides, nothing resists a turn, and a ZMP outside the support has no arm. Both have
-// findings of their own. The computation of the arm took a sixth of the time of a check, so it is
-// left out if a shorter arm already shows that the sample is neither an error nor the worst so far.
+// findings of their own. The computation of the arm took a sixth of the time of a check. It is left
+// out if a lower bound of the arm already shows that the sample is neither an error nor the worst
+// so far.
 void judge_torsion(JudgedMotion& motion, const JudgedSample& s) {
   if (!s.has_zmp()) return;
   const GroundDemand& use = s.demand.use;

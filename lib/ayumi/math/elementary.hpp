@@ -40,8 +40,8 @@ Eigen::Matrix2d turn_in_plane(double angle);
 /// Eigen::AngleAxisd.
 Eigen::Matrix3d turn_matrix(double angle, const Eigen::Vector3d& axis);
 Eigen::Quaterniond turn_quaternion(double angle, const Eigen::Vector3d& axis);
-/// The rotation on the shortest way from a to b, at the fraction `share` of its angle, as by
-/// Eigen's slerp().
+/// The rotation that is between a and b on the shortest arc, at the fraction `share` of the angle,
+/// as by Eigen's slerp().
 Eigen::Quaterniond between(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b, double share);
 /// The angle between two attitudes [rad], as by Eigen's angularDistance().
 double angle_between(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b);

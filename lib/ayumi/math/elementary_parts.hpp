@@ -1,16 +1,16 @@
 #pragma once
-// The series behind the elementary functions, for one number T or for several side by side (a
-// vector type of the compiler): the same operations are done in the same order, so that both give
-// the same bits. All functions are inlined into their callers, which may be compiled for wider
-// registers than others.
+// The series behind the elementary functions, for one number T or for several numbers side by side
+// (a vector type of the compiler). In both cases, the same operations are done in the same order,
+// so that they give the same bits. All functions are inlined into their callers, which may be
+// compiled for wider registers than others.
 
 #include <bit>
 #include <cstdint>
 
 namespace ayumi::elementary::parts {
 
-// Adding and subtracting this number rounds to a whole number: it is 1.5 * 2^52, whose last bit is
-// worth one.
+// Adding and subtracting this number rounds to a whole number: it is 1.5 * 2^52, whose last bit has
+// the value 1.
 constexpr double kRound = 6755399441055744.0;
 
 // A number as the sum of two numbers, of which the second is far smaller.

@@ -1,8 +1,8 @@
 #pragma once
-// The quickest way along a path whose limits are linear in u = s'' and x = s'^2, where s is the
+// The quickest motion along a path whose limits are linear in u = s'' and x = s'^2, where s is the
 // place on the path. It is found by time-optimal path parameterisation by reachability analysis
-// (Pham and Pham 2018). Over a step of length d between two points, x_{i+1} = x_i + 2 d u_i.
-// The backward pass finds the x from which the end is reached,
+// (Pham and Pham 2018). Over a step of length d between two points, x_{i+1} = x_i + 2 d u_i. The
+// backward pass finds the x from which the end is reached,
 //   K_i = {x : a u + b x <= c for the rows of both ends of the step, x + 2 d u in K_{i+1}},
 // which is an interval. The forward pass takes the largest u that stays in these intervals.
 

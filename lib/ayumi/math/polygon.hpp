@@ -23,11 +23,11 @@ class ConvexPolygon {
   /// it is -infinity.
   double margin(const Eigen::Vector2d& p) const;
 
-  /// The nearest point of the polygon; p itself if it is inside.
+  /// The nearest point of the polygon; p itself if it is inside, or if the polygon is empty.
   Eigen::Vector2d project(const Eigen::Vector2d& p) const;
 
-  /// The polygon of the points at least `distance` inside every edge; the centroid alone if there
-  /// are no such points.
+  /// The polygon of the points that are at least `distance` [m] inside every edge; the centroid
+  /// alone if there are no such points. A segment and a point are not changed.
   ConvexPolygon shrunk(double distance) const;
 
   /// Writes the same polygon into `result`, with two lists as workspace. All keep their memory.

@@ -1,9 +1,9 @@
 // The method is that of the primal active set. The step p with A_w p = 0 to the least value on the
 // working set w is the solution of
 //   [H A_w'; A_w 0] [p; l] = [-(H x + f); 0].
-// If a step meets an inequality, this is added to w. If p = 0, an inequality with l < 0 is removed
-// from w; if there is none, x is optimal. An inequality that a step meets is independent of those
-// of w, since A_w p = 0.
+// If a step meets an inequality, this inequality is added to w. If p = 0, an inequality with l < 0
+// is removed from w; if there is none, x is optimal. An inequality that a step meets is independent
+// of those of w, since A_w p = 0.
 #include "ayumi/math/quadratic_program.hpp"
 
 #include <Eigen/LU>

@@ -18,8 +18,9 @@ Eigen::Quaterniond exp_rotation(const Eigen::Vector3d& r);
 /// The rotation vector of q, with |r| <= pi [rad]. exp_rotation(log_rotation(q)) = +-q.
 Eigen::Vector3d log_rotation(const Eigen::Quaterniond& q);
 
-/// The smallest rotation that takes the direction of `from` to that of `to`. Lengths do not count,
-/// and neither vector is zero. Between opposite directions it is one of the many half turns.
+/// The smallest rotation that takes the direction of `from` to that of `to`. The lengths of the
+/// vectors have no effect, and neither vector may be zero. Between opposite directions it is one of
+/// the many half turns.
 Eigen::Quaterniond rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
 /// R = Rz(yaw) Ry(pitch) Rx(roll), where rpy = (roll, pitch, yaw) [rad].

@@ -69,7 +69,7 @@ RateInterval paired_difference(long only_first, long only_second, long pairs, do
   return {first.low - second.high, first.high - second.low};
 }
 
-// The r-th smallest value is below the quantile only if r values or more are below it.
+// The r-th smallest value is below the quantile exactly if at least r values are below it.
 long quantile_bound_rank(long n, double q, double confidence) {
   if (n < 1) return 0;
   const Binomial below(static_cast<double>(n), q);

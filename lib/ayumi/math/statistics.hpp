@@ -18,8 +18,9 @@ struct RateInterval {
 };
 
 /// The one-sided bounds of Clopper and Pearson (1934) for the probability of an event that happened
-/// in k of n runs. With the probability `confidence` or more, the true value is at most the upper
-/// bound; the same holds for at least the lower bound. For n = 0 they are 1 and 0.
+/// in k of n runs. The true value is at most the upper bound with a probability of at least
+/// `confidence`, and it is at least the lower bound with the same probability. For n = 0, the
+/// bounds are 1 and 0.
 double upper_bound(long k, long n, double confidence);
 double lower_bound(long k, long n, double confidence);
 /// The interval of Clopper and Pearson, with (1 - confidence) / 2 on each side.

@@ -24,6 +24,7 @@ struct TrackKey {
   Interpolation interpolation = Interpolation::minimum_jerk;
 };
 
+/// A value of a track with its rate [per s] and its acceleration [per s^2].
 struct TrackPoint {
   double value = 0, rate = 0, acceleration = 0;
 };

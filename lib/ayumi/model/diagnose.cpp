@@ -1,7 +1,7 @@
 // Mirror images: the reflection S = diag(1, -1, 1) takes a point p to S p and an axis of rotation a
-// to -S a. Where the axis of the right joint is sigma (-S a_left), the mirrored angle is sigma
-// times the left one, and motors that are mounted as mirror images turn in opposite directions:
-// their counts have the signs c_right = -sigma c_left.
+// to -S a. If the axis of the right joint is sigma (-S a_left), the mirrored angle is sigma times
+// the left angle. Motors that are mounted as mirror images turn in opposite directions, so their
+// counts have the signs c_right = -sigma c_left.
 
 #include "ayumi/model/diagnose.hpp"
 
@@ -339,7 +339,8 @@ class Doctor {
       for (const Link& link : model_.links())
         if (link.body == left->body && link.name == model_.bodies()[left->body].name)
           compare_links(link, model_.links()[model_.find_link(model_.bodies()[right->body].name)]);
-      // Displacement of the joint before this one: its own message already names it.
+      // The displacement of the joint before this one is subtracted, because another message
+      // already names it.
       Eigen::Vector3d before = Eigen::Vector3d::Zero();
       for (const auto& [above, other] : pairs)
         if (above->body == model_.bodies()[left->body].parent &&

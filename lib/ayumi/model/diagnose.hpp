@@ -16,13 +16,17 @@ struct ModelWarning {
   std::string message;  ///< the suspicion and the remedy
 };
 
-/// One warning for each cause, which names all links or joints that have it, or the first few and
-/// their number. Tests for: inertia that is implausible for mass and size (triangle inequality,
-/// placeholders, equal tensors on many links), missing limits, effort or speed that are
-/// placeholders, left-right asymmetry of masses, lengths and limits (partners are found by their
-/// places, not by their names), soles not level at the home posture, a COG outside the soles, sign
-/// conflicts of encoders between left and right, joints without servo or encoder, missing collision
-/// shapes, meshes far larger than the robot.
+/// One warning for each cause. It names all links or joints that have this cause, or the first few
+/// and their number. The function tests for:
+///   - an inertia that is implausible for mass and size (triangle inequality, placeholders, equal
+///     tensors on many links);
+///   - missing limits, and efforts or speeds that are placeholders;
+///   - left-right asymmetry of masses, lengths and limits (partners are found by their places, not
+///     by their names);
+///   - soles that are not level in the home posture, and a COG outside the soles;
+///   - sign conflicts of encoders between left and right;
+///   - joints without servo or encoder;
+///   - missing collision shapes, and meshes that are far larger than the robot.
 std::vector<ModelWarning> diagnose(const RobotModel& model);
 
 /// Feet and bodies of more than 5 % of the robot's mass that have no collision shape, by name.

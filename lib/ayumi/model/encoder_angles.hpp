@@ -10,8 +10,9 @@
 
 namespace ayumi {
 
-/// The side of the border on which angles were measured: readings of the encoders of this unit, or
-/// angles from instruments at the joints, which do not share the zeros of the encoders.
+/// The side of the border on which angles were measured. `encoder`: readings of the encoders of
+/// this unit. `joint`: angles from instruments at the joints, which the zeros of the encoders do
+/// not affect.
 enum class MeasuredAt { encoder, joint };
 
 /// "encoder" or "joint"; throws Error(usage) for another name.
@@ -21,8 +22,8 @@ MeasuredAt measured_at(const std::string& name);
 /// reads 0 [rad, m], by dof. They belong to the unit, so they are the same in all its profiles.
 Eigen::VectorXd encoder_zeros(const RobotModel& model);
 
-/// The angles that the encoders read while the joints have these angles, and the reverse. If there
-/// are no zeros, or all are 0, both are the same, to the bit.
+/// Converts joint angles to the angles that the encoders read, and back [rad, m]. If `zeros` is
+/// empty or contains only 0, the result has the same bits as the argument.
 Eigen::VectorXd encoder_angles(const Eigen::VectorXd& joints, const Eigen::VectorXd& zeros);
 Eigen::VectorXd joint_angles(const Eigen::VectorXd& encoders, const Eigen::VectorXd& zeros);
 

@@ -64,12 +64,13 @@ struct LoadFriction {
   bool operator==(const LoadFriction&) const = default;
 };
 
-/// A position servo. It receives positions only. With the target of `delay` seconds ago, the angle
-/// phi of the motor behind the gear (the angle of the joint itself if the gear has neither backlash
-/// nor stiffness), its reading theta = phi - offset and the error e = target - theta, which is zero
-/// within the dead band and reduced by it beyond,
+/// A position servo. It receives positions only. The target that acts is the one that it received
+/// `delay` seconds ago. phi is the angle of the motor behind the gear; if the gear has neither
+/// backlash nor stiffness, phi is the angle of the joint. The servo reads theta = phi - offset. Its
+/// error e is target - theta, reduced by the dead band; within the dead band, e is zero. The motor
+/// gives
 ///   torque = kp e - kd dphi,   or with an inner speed loop   kd (clamp(kp / kd e) - dphi),
-/// bounded by the profile's peak torque and by the motor's voltage. A velocity feed-forward is a
+/// limited by the profile's peak torque and by the motor's voltage. A velocity feed-forward is a
 /// lead of delay + kd/kp seconds of the target. For a sliding joint, read m instead of rad.
 struct ServoDescription {
   double kp = 0;             ///< stiffness of the position loop [N m/rad]
@@ -78,7 +79,8 @@ struct ServoDescription {
   double viscous = 0;        ///< viscous friction of gear and bearing [N m s/rad]
   double coulomb = 0;        ///< dry friction [N m]
   double delay = 0;          ///< transport delay of the target [s], any number of ticks
-  /// Largest speed that the position loop asks the inner speed loop for [rad/s]; 0 for no bound.
+  /// Largest speed that the position loop requests from the inner speed loop [rad/s]; 0 for no
+  /// bound.
   double speed_command_limit = 0;
   /// Dry friction at rest in addition to `coulomb` [N m]; at the rate v it is s times as large,
   /// with s = exp(-(|v| / stribeck_rate)^stribeck_exponent).

@@ -82,11 +82,11 @@ struct Sole {
 
 class RobotModel {
  public:
-  /// Throws Error(bad_model) that names the link or joint and the remedy. Refused are: no root or
-  /// several roots, a loop, an unknown link, two links of one name, a moving body without mass, a
-  /// negative mass, an inertia that no body can have, numbers that are not finite, an axis of
-  /// length zero, limits in the wrong order, an unknown mimic, sole or posture joint, and a posture
-  /// outside the limits.
+  /// Throws Error(bad_model), which names the link or joint and the remedy, for:
+  ///   - no root or several roots, a loop, an unknown link, or two links of one name;
+  ///   - a moving body without mass, a negative mass, or an inertia that no body can have;
+  ///   - numbers that are not finite, an axis of length zero, or limits in the wrong order;
+  ///   - an unknown mimic, sole or posture joint, or a posture outside the limits.
   explicit RobotModel(RobotDescription description);
 
   const RobotDescription& description() const { return description_; }
@@ -96,8 +96,8 @@ class RobotModel {
   const std::vector<Body>& bodies() const { return bodies_; }
   const std::vector<Dof>& dofs() const { return dofs_; }
   const std::vector<Link>& links() const { return links_; }
-  /// Hulls of the collision meshes, by link and collision shape, without points for other shapes.
-  /// They are computed at the first call, for all copies of the model.
+  /// Hulls of the collision meshes, by link and collision shape; for a shape that is no mesh, the
+  /// hull has no points. The hulls are computed at the first call, for all copies of the model.
   const std::vector<std::vector<MeshHull>>& collision_hulls() const;
   int dof_count() const { return static_cast<int>(dofs_.size()); }
   int velocity_count() const { return 6 + dof_count(); }

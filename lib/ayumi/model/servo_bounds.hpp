@@ -1,7 +1,7 @@
 #pragma once
 // Bounds of servo constants that follow from the robot itself. The reader of a robot's file only
-// knows bounds that hold for every robot, and the constants of a small servo in a wrong unit may be
-// within these bounds. Constants that no motor of a robot of this mass and size can have are
+// tests bounds that are valid for every robot. The constants of a small servo in a wrong unit may
+// be within these bounds. Constants that no motor of a robot of this mass and size can have are
 // refused here.
 
 #include "ayumi/model/robot_model.hpp"

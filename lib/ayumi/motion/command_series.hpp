@@ -15,8 +15,8 @@
 namespace ayumi {
 
 struct CommandSample {
-  RobotState state;                                 ///< planned state of base and joints
-  Eigen::VectorXd acceleration;                     ///< [a_WB; dw_WB; ddtheta], world axes
+  RobotState state;              ///< planned state of base and joints
+  Eigen::VectorXd acceleration;  ///< [a_WB; dw_WB; ddtheta], world axes [m/s^2, rad/s^2]
   Eigen::Vector3d cog = Eigen::Vector3d::Zero();    ///< commanded COG p_G in the world [m]
   Eigen::Vector3d dcog = Eigen::Vector3d::Zero();   ///< velocity of the COG [m/s]
   Eigen::Vector3d ddcog = Eigen::Vector3d::Zero();  ///< acceleration of the COG [m/s^2]

@@ -18,10 +18,11 @@ struct SplineWeights {
 };
 SplineWeights correction_weights(const CorrectionTrack& track, double t);
 
-/// The series, made smooth in the windows of the track (motion/smooth_motion.hpp), with the track
-/// added to base and joints (base rotation exp(r) R), with the velocities and accelerations that
-/// follow, and with COG, ZMP and f_z of the full model. Contacts do not
-/// change. Throws Error(bad_pattern) for an unknown joint or a wrong number of columns.
+/// The series with the correction. It is first made smooth in the windows of the track
+/// (motion/smooth_motion.hpp). Then the track is added to base and joints (the rotation R of the
+/// base becomes exp(r) R). Velocities and accelerations follow from the sum, and COG, ZMP and f_z
+/// from the full model. Contacts do not change. Throws Error(bad_pattern) for an unknown joint, a
+/// wrong number of columns, a spacing that is not above 0, or a coefficient that is not finite.
 CommandSeries apply_correction(const RobotModel& model, const CommandSeries& series,
                                const CorrectionTrack& track);
 

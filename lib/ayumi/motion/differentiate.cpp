@@ -1,6 +1,7 @@
 // All values are taken relative to sample k, so that the rotation vector r of q_i q_k^-1 is zero
-// there and w = r', dw = r''. x' = (x_-2 - 8 x_-1 + 8 x_1 - x_2) / 12 h, x'' = (-x_-2 + 16 x_-1 -
-// 30 x_0 + 16 x_1 - x_2) / 12 h^2.
+// there, and w = r', dw = r''. With the time h between samples,
+//   x'  = (x_-2 - 8 x_-1 + 8 x_1 - x_2) / 12 h,
+//   x'' = (-x_-2 + 16 x_-1 - 30 x_0 + 16 x_1 - x_2) / 12 h^2.
 #include "ayumi/motion/differentiate.hpp"
 
 #include <algorithm>

@@ -57,8 +57,8 @@ struct FloorMotion {
 
 struct World {
   double friction = 0.8;  ///< Coulomb coefficient of the ground
-  /// Slope of the ground about the world x and y axis [rad] (rotation vector, plane through the
-  /// origin). Gravity stays along -z.
+  /// Slope of the ground, as a rotation vector about the world's x and y axes [rad]. The plane goes
+  /// through the origin. Gravity stays along -z.
   Eigen::Vector2d slope = Eigen::Vector2d::Zero();
   double height = 0;  ///< height of the plane over the ground's origin, along its normal [m]
   std::vector<GroundBlock> blocks = {};
@@ -71,8 +71,9 @@ struct World {
 /// 4, or 8 for a disc.
 int block_corners(const GroundBlock& block, std::array<Eigen::Vector2d, 8>& corners);
 
-/// The pose of the ground's frame in the world at time t [s], from the slope and all motions.
-/// Before time 0, it is the same as at 0.
+/// The pose of the ground's frame in the world at time t [s]. It follows from the slope, the
+/// motions of `world` and the `further` motions, such as those of a scenario. Before time 0, it is
+/// the pose at 0.
 Eigen::Isometry3d floor_pose(const World& world, const std::vector<FloorMotion>& further, double t);
 
 }  // namespace ayumi

@@ -42,9 +42,10 @@ struct LawTerms {
   double spring_goal = 0;     ///< ref z_G of (24) above the ground [m]
   double spring_height = 0;   ///< z_G above the ground [m]
   double spring_rate = 0;     ///< rate of z_G minus that of ref z_G [m/s]
-  /// Terms of the acceleration of the reference. They are: the motion itself (the commanded one in
-  /// DTAD; (14) to (17) of the reference pendulum in VIIP), the short-term absorption, the pull to
-  /// the command (DTAD) or to the measured state (VIIP), and the damping of the rocking.
+  /// Terms of the acceleration of the reference. `motion` is the commanded motion in DTAD, and (14)
+  /// to (17) of the reference pendulum in VIIP. `short_term` is the short-term absorption, `pull`
+  /// the pull to the command (DTAD) or to the measured state (VIIP), and `rocking` the damping of
+  /// the rocking.
   Eigen::Vector3d motion = Eigen::Vector3d::Zero(), short_term = Eigen::Vector3d::Zero(),
                   pull = Eigen::Vector3d::Zero(), rocking = Eigen::Vector3d::Zero();
 };

@@ -86,7 +86,7 @@ inline ZmpKey::Place opposite(ZmpKey::Place place) {
 struct LinkTarget {
   enum class Frame { world, trunk };
   Frame frame = Frame::world;
-  /// Place of the end; without it, the keys of the joints lead the link again.
+  /// Place of the end; without it, the link follows the keys of its joints again.
   std::optional<Eigen::Vector3d> position;
   std::optional<Eigen::Vector3d> direction;  ///< unit vector from the link's joint to its end
 };
@@ -156,7 +156,8 @@ struct CorrectionTrack {
 enum class Trust { posture, cog, zmp };
 const char* name_of(Trust trust);
 
-/// The author's preferences for a repair. The caller of the repair decides what is left out.
+/// The author's preferences for a repair. The caller of the repair chooses the values that are not
+/// stated here.
 struct RepairPreferences {
   std::vector<std::string> joints;  ///< locked joints, which stay bit-identical
   std::array<bool, 2> feet = {};    ///< locked feet, by Side, which keep their path

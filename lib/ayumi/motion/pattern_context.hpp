@@ -11,8 +11,9 @@
 
 namespace ayumi {
 
-/// The joints that a posture sets [rad]: the named ones for a posture of the pattern, and all for
-/// one of the robot. Throws Error(bad_pattern) "file: place: ..." for an unknown posture or joint.
+/// The joints that a posture sets [rad]. A posture of the pattern sets the joints that it names,
+/// and a posture of the robot sets all joints. Throws Error(bad_pattern) "file: place: ..." for an
+/// unknown posture or joint, or an angle that is not finite.
 std::map<std::string, double> posture_joints(const RobotModel& model, const Pattern& pattern,
                                              const std::string& name, const SourcePlace& place);
 

@@ -45,8 +45,9 @@ struct ReferenceTrajectory {
   TableServo servo = {};
 };
 
-/// The table at another rate, interpolated linearly between its rows. If the last row is not on one
-/// of the new ticks, it follows as one more row.
+/// The table with rows every `dt` [s], interpolated linearly between its rows. If the last row is
+/// not on one of the new ticks, it follows as one more row. Throws Error(usage) if `dt` is not
+/// above 0 or gives too many rows (4e6).
 ReferenceTrajectory resampled(const ReferenceTrajectory& table, double dt);
 
 }  // namespace ayumi

@@ -143,8 +143,8 @@ void smooth_window(CommandSeries& series, const SmoothWindow& window) {
 }
 
 // Velocities and accelerations where the curve changes them: in the window and, because differences
-// use two neighbours, next to it. The others are those of the motion. A curve rests at the ends of
-// the motion.
+// use two neighbours, next to it. All other samples keep those of the motion. A curve rests at the
+// ends of the motion.
 void fill_rates_of(CommandSeries& series, const SmoothWindow& window) {
   const auto [first, end, last] = span_of(series, window);
   if (end - first < kFewestSteps) return;

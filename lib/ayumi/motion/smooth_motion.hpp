@@ -1,6 +1,6 @@
 #pragma once
-// Replaces parts of a sampled motion by smooth curves, where noise, rounded angles or jumps spoil
-// its accelerations.
+// Replaces parts of a sampled motion by smooth curves, where noise, rounded angles or jumps make
+// its accelerations useless.
 
 #include "ayumi/model/robot_model.hpp"
 #include "ayumi/motion/command_series.hpp"

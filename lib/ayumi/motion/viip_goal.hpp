@@ -14,7 +14,7 @@ struct CogGoal {
 };
 
 /// Both feet stay, and the COG moves at this velocity [m/s], ref v_G of the paper, in the axes of
-/// the feet (x forward, z up). It starts from the place that the goals before it ask for, and it
+/// the feet (x forward, z up). It starts from the place that the previous goals command, and it
 /// stops when the phase ends.
 struct CogVelocityGoal {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();

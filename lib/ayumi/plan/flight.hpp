@@ -11,7 +11,7 @@
 
 namespace ayumi {
 
-/// The planned COG at a time: position [m], and rate and acceleration by axis.
+/// The planned COG in the world at a time, by axis: position [m], rate [m/s], acceleration [m/s^2].
 using CogAt = std::function<std::array<TrackPoint, 3>(double)>;
 
 /// The turn of the trunk; zero for patterns without flight or with torso keys. Throws

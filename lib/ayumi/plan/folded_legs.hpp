@@ -7,8 +7,9 @@
 namespace ayumi {
 
 // Below this share of the COG height at home, legs are folded. Chosen: the deepest squat of HOAP-1
-// is at 0.6 and walks are above 0.9. With half of this share, heights at which no leg folds further
-// would count as too high; with twice, legs that are nearly straight would count as folded.
+// is at 0.6 and walks are above 0.9. With half of this share, a COG would be called too high
+// although no leg can fold further; with twice, legs that are nearly straight would count as
+// folded.
 inline constexpr double kFoldedShare = 0.7;
 
 /// COG height in the home posture of a pattern [m].

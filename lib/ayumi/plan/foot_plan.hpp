@@ -73,9 +73,9 @@ class FootPlan {
 
  private:
   struct Move {
-    double begin = 0, end = 0;
-    Eigen::Isometry3d from, to;
-    double lift = 0;
+    double begin = 0, end = 0;   ///< begin and end of the swing [s]
+    Eigen::Isometry3d from, to;  ///< poses of the sole frame in the world
+    double lift = 0;             ///< largest height above the path from `from` to `to` [m]
     Eigen::Vector3d turn;  ///< rotation vector from `from` to `to`, in the axes of `from` [rad]
   };
   struct KeyedFoot {

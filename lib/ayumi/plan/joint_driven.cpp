@@ -83,8 +83,8 @@ void table_base(const SampleJob& job, CommandSeries& series) {
   }
 }
 
-// Place of a foot from sample `first` to `last`: the median of its places according to the joints,
-// so that a late landing or a slip during less than half of the time does not change it.
+// Place of a foot from sample `first` to `last`: the median of its places according to the joints.
+// A late landing or a slip during less than half of the time does not change the median.
 Isometry3d median_sole(const std::vector<Isometry3d>& soles, int first, int last) {
   const int n = last - first + 1;
   std::array<std::vector<double>, 6> values;

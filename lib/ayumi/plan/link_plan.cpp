@@ -652,8 +652,8 @@ void LinkPlan::complain(const Group& group, double t, const std::vector<Aim>& ai
     update_positions(*model_, state, data);
   }
   // The limb may be in a posture from which every small change leads away from the target. Other
-  // postures show how near it comes. (While the trunk moves to its place at the key, that says
-  // nothing about the key.)
+  // postures show how near it comes. While the trunk still moves to its place at the key, they say
+  // nothing about the time of the key, so they are not tried.
   const auto off = [&] {
     const Eigen::Isometry3d pose = data.pose(target.body);
     return std::pair(

@@ -1,8 +1,9 @@
 #pragma once
-// Hands, other links and the gaze of a pattern as they move over time, and the joints that follow
-// them. A link without a target is where the keys of its joints put it; between two keys it moves
-// from one place to the other. Of all postures of the limb that put the link there, the joints take
-// the one nearest to their own keys, so that their motion begins and ends at these keys.
+// The motion of hands, other links and the gaze of a pattern, and of the joints that follow their
+// targets. Where a link has no target, the keys of its joints place it; between a key without a
+// target and a key with a target, it moves from one place to the other. Of all postures of the limb
+// that put the link at its place, the joints take the posture nearest to their own keys. So their
+// motion begins and ends at these keys.
 
 #include <array>
 #include <map>
@@ -32,8 +33,8 @@ class MissedOnTheWay : public Error {
 class LinkPlan {
  public:
   /// `solved` marks the joints of the legs. Throws Error(bad_pattern) "file: place: ..." for an
-  /// unknown link, one that no joint moves alone or that a leg moves, and for a robot without the
-  /// hand or the head that a key names.
+  /// unknown link, for a link of a leg, for a link that has no joint between itself and the trunk,
+  /// and for a robot without the hand or the head that a key names.
   LinkPlan(const RobotModel& model, const Pattern& pattern, const std::vector<bool>& solved);
 
   bool empty() const { return groups_.empty(); }
@@ -58,9 +59,8 @@ class LinkPlan {
   std::string origin() const;
 
  private:
-  /// A quantity of the keys as a sum of weighted parts: one part is given in the world, one is
-  /// given in the frame of the trunk, and the rest of the weight is for keys that do not give the
-  /// quantity.
+  /// A quantity of the keys as a sum of weighted parts. One part is given in the world, and one in
+  /// the frame of the trunk. The rest of the weight belongs to keys that do not give the quantity.
   struct Blend {
     std::array<Track, 3> world, trunk;
     Track in_world{0.0}, in_trunk{0.0};
@@ -82,8 +82,8 @@ class LinkPlan {
         Eigen::Vector3d::Zero();  ///< direction of the link, body frame, unit vector
     double length = 0;            ///< length of the limb [m]
     std::vector<int> dofs;
-    /// Bodies that carry the target and that its group moves, root first, and their places among
-    /// the dofs of the group.
+    /// The bodies on the way from the root to the target that joints of the group move, root first,
+    /// each with the index of its joint in Group::dofs.
     std::vector<std::pair<int, Eigen::Index>> chain;
     std::vector<Anchor> anchors;
     Blend place, direction;

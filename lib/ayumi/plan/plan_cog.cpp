@@ -71,11 +71,10 @@ constexpr double kLeastHeight = 0.3;
 // inverse kinematics.
 constexpr double kLook = 5e-4;
 
-// Where legs lack joints, the trunk leans to move the COG aside, and its angular momentum L about
-// the COG is proportional to the COG's speed, so that the robot falls like a pendulum that is
-// higher by L / (m v): the ZMP is c - (z + L / (m v)) c'' / g. Returns the additional height L / (m
-// v) for both axes [m], at the start of the motion. It is 0 for other legs, whose trunk keeps its
-// attitude.
+// Where legs lack joints, the trunk leans to move the COG aside. Its angular momentum L about the
+// COG is then proportional to the COG's speed v. So the robot falls like a pendulum that is higher
+// by L / (m v): the ZMP is c - (z + L / (m v)) c'' / g. Returns this additional height for both
+// axes [m], at the start of the motion. It is 0 for other legs, whose trunk keeps its attitude.
 Eigen::Vector2d lean_height(const SampleJob& job, const CogPlan& plan) {
   Eigen::Vector2d height = Eigen::Vector2d::Zero();
   if (!job.ik.lacks_joints()) return height;

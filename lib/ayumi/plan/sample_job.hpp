@@ -33,14 +33,14 @@ struct SampleJob {
   const TreeDynamics dynamics = TreeDynamics(model);
 };
 
-/// Number of samples that one thread solves in a row, each from the previous ones. Chosen: much
-/// more than the first few, which cost more, and few enough to occupy all cores. Figures change by
-/// rounding only.
+/// Number of samples that one thread solves one after the other, each with the previous ones as its
+/// initial guess. Chosen: the first few samples of a block cost more, and they are few in a block
+/// of this size; there are still enough blocks for all cores. Figures change by rounding only.
 inline constexpr int kBlock = 256;
 
-/// Calls work(first, end) for blocks of `block` of the numbers 0..count-1, on the threads of the
-/// job. Reports the stage from time to time if there are very many blocks. With `block` = 0, there
-/// is only one block.
+/// Divides the numbers 0..count-1 into blocks of `block` numbers and calls work(first, end) for
+/// each block, on the threads of the job. Reports the stage from time to time if there are very
+/// many blocks. With `block` = 0, there is only one block.
 template <class Work>
 void in_blocks(const SampleJob& job, const char* stage, int count, int block, const Work& work) {
   // Blocks between two reports. Chosen: they take a fraction of a second.

@@ -10,14 +10,16 @@
 
 namespace ayumi {
 
-/// What the COG of a plan follows along the ground.
+/// How the COG of a plan moves along the ground.
 enum class PlannedCog {
   keys,  ///< its keys, and the ZMP in the axes without keys
-  zmp    ///< the centres of the supporting soles, from the first to the last place that the keys
-         ///< give to the COG, or the keys of the ZMP and then, if time is left, this last place
+  /// The ZMP: its keys and then, if time is left, the last place that the keys give to the COG.
+  /// Without keys of the ZMP, it moves over the centres of the supporting soles, from the first to
+  /// the last place that the keys give to the COG.
+  zmp
 };
 
-/// What a plan follows in place of what its pattern gives.
+/// Replaces parts of a pattern for sample_plan().
 struct PlanLead {
   PlannedCog cog = PlannedCog::keys;
   /// The ZMP in the world [m], in place of the ZMP of the phases and of keys.

@@ -44,10 +44,9 @@ struct LociOptions {
 
 /// Panels against time, one above the other. Support phases are shaded after the plan of the last
 /// run, pushes are marked, and a fall is marked by a cross. Ranges follow the command and the runs
-/// in which the robot does not fall; a run with a fall that leaves them is cut off, and the plot
-/// says so. Throws Error(usage) if there is no run, if a run has no samples or
-/// is of another robot, if there are more than
-/// six runs, or if there is nothing to show between begin and end.
+/// in which the robot does not fall. A run with a fall that leaves these ranges is cut off, and the
+/// plot says so. Throws Error(usage) if there is no run, if a run has no samples or is of another
+/// robot, if there are more than six runs, or if there is nothing to show between begin and end.
 Drawing draw_loci(const std::vector<LociRun>& runs, const LociOptions& options);
 
 /// The ground seen from above: paths of COG and ZMP, the reference ZMP, and the soles where the

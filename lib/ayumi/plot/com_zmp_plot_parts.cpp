@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kLegend = 12.5;  // font size [pixel]
 
-// Colours that can also be distinguished without colour vision: dark, vermilion, blue, green,
-// purple, sky blue and yellow.
+// Colours that can also be distinguished without colour vision: vermilion, blue, green, purple, sky
+// blue and yellow.
 const Eigen::Vector4f kRunColors[] = {{0.84f, 0.37f, 0.00f, 1}, {0.00f, 0.45f, 0.70f, 1},
                                       {0.00f, 0.62f, 0.45f, 1}, {0.80f, 0.47f, 0.65f, 1},
                                       {0.34f, 0.71f, 0.91f, 1}, {0.72f, 0.66f, 0.05f, 1}};

@@ -264,8 +264,8 @@ void write_push_map(const PushMap& map, const std::filesystem::path& path) {
 namespace {
 
 /// A foot makes a step if it lands at least this far from where it left the ground [m], or turned
-/// at least this much [rad]. Chosen: above the slip that the
-/// check allows, and below the steps of small robots.
+/// at least this much [rad]. Chosen: above the slip that the check allows, and below the steps of
+/// small robots.
 constexpr double kStepDistance = 5e-3, kStepTurn = 0.02;
 
 /// The motion of the robot in the phases in which it does not stand in the first posture. A robot

@@ -106,7 +106,7 @@ Framing framing(const Camera& camera, double aspect, const std::vector<Vector3d>
   };
   for (const int axis : {0, 1}) {
     const Eigen::Vector2d at_zero = edges(axis, 0);
-    // Gain of the picture for each metre of distance, or of height in a parallel view.
+    // Growth of the visible part for each metre of distance, or of height in a parallel view.
     const double gained =
         parallel ? share * (axis == 0 ? aspect : 1.0) : 2 * k[static_cast<size_t>(axis)];
     result.distance = std::max(result.distance, (at_zero[0] - at_zero[1]) / gained);

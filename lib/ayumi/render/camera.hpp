@@ -1,6 +1,6 @@
 #pragma once
-// The camera of a picture. Image x to the right, y down; the centres of the pixels are at half
-// numbers.
+// The camera of a picture. In the image, x is to the right and y is down. The centre of a pixel is
+// half a pixel to the right of and below its corner.
 
 #include <Eigen/Geometry>
 #include <string>
@@ -47,10 +47,10 @@ struct CameraOptions {
 /// projections.
 const std::vector<std::string>& view_names();
 
-/// The movement of `camera` across its view, and nearer or farther, so that points are just within
-/// a share of the picture. `offsets` are relative to the camera's target, in axes of the view
-/// (right, up, back) [m]. They may be those of several instants, whose pictures then have the same
-/// scale.
+/// How a camera has to move, across its view and nearer or farther, so that given points just fill
+/// a share of the picture. `offsets` are the points relative to the camera's target, in axes of the
+/// view (right, up, back) [m]. With the points of several instants, the pictures of these instants
+/// have the same scale.
 struct Framing {
   double right = 0, up = 0;  ///< distances by which the target moves across the view [m]
   /// Distance of a pinhole camera from the target, or the height of a parallel view [m].

@@ -22,7 +22,8 @@ namespace ayumi {
 /// A second, translucent robot.
 struct GhostOptions {
   bool command = false;  ///< the ghost is the commanded posture of the same log
-  /// Otherwise another run of the same robot, which must outlive the clip.
+  /// Another run of the same robot that is drawn as a ghost; null for none. It must outlive the
+  /// clip.
   const SimulationLog* log = nullptr;
   std::string name = "other run";  ///< name of the other run in the legend
 };
@@ -47,9 +48,9 @@ struct ClipOptions {
 };
 
 struct ClipSummary {
-  int frames = 0;
-  int width = 0, height = 0;  ///< size [pixel]
-  double fps = 0;
+  int frames = 0;                 ///< number of frames; 1 for a single picture
+  int width = 0, height = 0;      ///< size [pixel]
+  double fps = 0;                 ///< frames per second of a clip
   std::optional<double> at = {};  ///< time of a single picture [s]
   std::vector<std::string> notes =
       {};  ///< what is drawn differently from the robot's files, and why
@@ -90,12 +91,12 @@ class ClipRenderer {
   Image tile(double t);
   /// Gives all later pictures the same frame, which the robot fills at these instants.
   void frame_robot(const std::vector<double>& times);
-  /// The lines of a sheet: one with title, controller and verdict, and the marks with their
-  /// meanings over as many lines as they need. `size` is that of the letters [pixel], and the lines
-  /// extend from (left, top) to the right edge. The functions return the height that the lines take
-  /// [pixel]; without an image, nothing is drawn. A push is among the marks if the picture, the
-  /// framed ones or the whole clip show one. `instants` are named instead of t if a picture shows
-  /// several.
+  /// The lines of a sheet. write_title() writes one line with title, controller and verdict, and
+  /// `instants` instead of `t` if a picture shows several. write_legend() writes the marks with
+  /// their meanings over as many lines as they need; a push is among them if the picture, the
+  /// framed pictures or the whole clip show one. `size` is that of the letters, and the lines begin
+  /// at `top` and extend to the right edge [pixel]. Both functions return the height of the lines
+  /// [pixel]; without an image, nothing is drawn.
   double write_title(Image& image, double top, double size, double t,
                      const std::string& instants = "") const;
   double write_legend(Image* image, int width, double top, double size) const;

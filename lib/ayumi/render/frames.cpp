@@ -14,8 +14,9 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-// Largest tilt of a sole against the plan [rad] with which the place of the plan is taken from it.
-// Chosen: soles of a walk tilt by less than 3 degrees, and a robot that falls exceeds this at once.
+// Largest tilt of a sole against the plan [rad] with which this sole still determines the place of
+// the plan. Chosen: soles of a walk tilt by less than 3 degrees, and a robot that falls exceeds
+// this at once.
 constexpr double kTilted = 0.1;
 
 /// The poses of the soles' middles in many postures.

@@ -34,8 +34,9 @@ constexpr int kSharpness = 4;
 /// colour have 0.17 and more.
 constexpr float kGrey = 0.1f;
 
-/// Share of the robot's surface for which the colours of heat are counted. Chosen: the share of the
-/// bodies of few joints near a limit. With more, the robot's own colours would count for little.
+/// Share of the robot's surface for which the colours of heat are counted. Chosen: the share that
+/// the bodies of a few joints near their limits have. With more, the robot's own colours would
+/// count for little.
 constexpr double kHeatShare = 0.2;
 
 /// The colour as seen along the axis of greys: its direction is the hue, and its length the

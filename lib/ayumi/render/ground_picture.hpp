@@ -16,8 +16,8 @@ namespace ayumi {
 /// Half the edge of the visible square of the plane, in distances of the camera from its target.
 constexpr double kPlaneReach = 30;
 
-/// The point of the plane at the camera's target, in coordinates of the plane: the middle of that
-/// square.
+/// The middle of the visible square of the plane, in coordinates of the plane: the point of the
+/// plane at the camera's target.
 Eigen::Vector2d middle_of_plane(const Camera& camera, const GroundRectangle& plane);
 
 /// Pixels of a row; the end is excluded.
@@ -45,7 +45,7 @@ class GroundPicture {
   GroundPicture(const Camera& camera, const Eigen::Matrix4d& to_clip, int width, int height,
                 const GroundRectangle& plane, const Eigen::AlignedBox2d& hole, bool shown);
 
-  /// The parts of a row that show the plane, before the hole and behind it.
+  /// The parts of a row that show the plane: to the left and to the right of the hole.
   std::array<PixelSpan, 2> plane_in_row(int y) const;
   void draw(const ShadowPicture& shadow, Image& image) const;
 

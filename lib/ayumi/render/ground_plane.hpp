@@ -9,7 +9,7 @@
 
 namespace ayumi {
 
-/// Frame of the ground plane and the square of it that the robot's shadow falls on.
+/// Frame of the ground plane, and the square of this plane on which the robot's shadow falls.
 struct GroundRectangle {
   Eigen::Vector3d origin, u, v, normal;
   Eigen::Vector2d center;

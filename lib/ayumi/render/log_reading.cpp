@@ -58,9 +58,8 @@ constexpr double kSeenMove = 0.05, kSeenShare = 0.15;
 // Share of the move within which an extreme that is held counts as reached. Chosen: in a quintic
 // between rests, 2 % of the distance are left after 86 % of the time.
 constexpr double kReached = 0.02;
-// A curve that stays near an extreme for less than this time passes it and does not rest there [s].
-// Chosen: a kick or a nod
-// stays near its end for a quarter of a second.
+// A curve that stays near an extreme for less than this time only passes it and does not rest there
+// [s]. Chosen: a kick or a nod stays near its end for a quarter of a second.
 constexpr double kPassed = 0.5;
 
 /// Adds the instants at which a curve turns back or comes to rest after a move of at least `least`,
@@ -217,9 +216,9 @@ double news_at(const SimulationLog& log, double t, const std::vector<double>& ti
 }
 
 /// Takes candidates by weight until there are `count` times. No candidate is nearer to another than
-/// `apart`, except events, which may have any distance. No posture is taken twice. Among candidates
-/// of about the same weight, the function first takes one that stands on other feet than the
-/// nearest time taken, and then the one that is farthest from it.
+/// `apart`, except events, which may have any distance. No posture is taken twice. Of candidates
+/// with about the same weight, those come first in which the robot stands on other feet than at the
+/// nearest time that was taken, and among these the one that is farthest from this time.
 void take(const SimulationLog& log, std::vector<Candidate> candidates, size_t count, double apart,
           std::vector<double>& times) {
   // Ratio of weights that are alike. Chosen: the steps of a walk differ by less.

@@ -16,8 +16,8 @@ double duration(const SimulationLog& log);
 /// A text such as " (l_knee at 2.90 s)", which follows the share; "" if its place is unknown.
 std::string place_in_brackets(const SimulationLog& log, const JointShare& share);
 
-/// The sample at `t` (held within the log). Continuous quantities are interpolated between ticks;
-/// contacts and push are those of the tick before.
+/// The sample at `t`, which is limited to the times of the log. Continuous quantities are
+/// interpolated between ticks; contacts and push are those of the tick before.
 SimulationSample sample_at(const SimulationLog& log, double t);
 
 /// The floor's frame in the world at `t`: the slope and every motion of the floor, including those
@@ -66,9 +66,10 @@ double telling_instant(const SimulationLog& log);
 /// `count` instants worth showing [s], in the order of time. They are: beginning and end, pushes,
 /// the fall, the apex of each flight, then postures in which joints or the COG turn back or come to
 /// rest (those with larger moves first), and instants that fill the longest gaps. In a walk, some
-/// of them show the robot on the left foot and some on the right foot. All instants lie around
-/// pushes, with the step or kick during which the first push acts, or around flights, unless the
-/// robot moves more elsewhere.
+/// of them show the robot on the left foot and some on the right foot. In a run with flights, all
+/// instants lie around these. In another run with pushes, they lie around the pushes, from the
+/// beginning of the step or kick in which the first push acts. If the robot moves more before or
+/// after this part, that time is included.
 std::vector<double> telling_instants(const SimulationLog& log, int count);
 
 /// The event at an instant, such as "push 1.1 N s", "apex" or "falls"; empty if there is none.

@@ -9,7 +9,7 @@ namespace ayumi {
 
 enum class Offscreen { automatic, osmesa, egl };
 
-/// The ways that this build has. The first is the one that `automatic` takes.
+/// The ways of making a context that this build has. `automatic` takes the first one.
 std::vector<Offscreen> offscreen_ways();
 
 /// Owns a context of OpenGL 3.3 core or newer. Only one thread may use it at a time.

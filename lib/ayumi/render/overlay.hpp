@@ -35,7 +35,7 @@ struct OverlayOptions {
 struct Label {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< place in the world [m]
   std::string text;
-  double opacity = 1;
+  double opacity = 1;  ///< from 0 to 1
 };
 
 struct Overlay {
@@ -43,6 +43,7 @@ struct Overlay {
   std::vector<Label> labels;
 };
 
+/// Colours of the marks: sRGB and alpha, from 0 to 1.
 namespace overlay_color {
 inline const Eigen::Vector4f kCog = {0.95f, 0.72f, 0.10f, 1};
 inline const Eigen::Vector4f kZmp = {0.84f, 0.15f, 0.12f, 1};

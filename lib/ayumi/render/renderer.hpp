@@ -43,7 +43,7 @@ std::shared_ptr<const DrawnRobot> drawn_robot(const std::vector<BodySurface>& ro
 struct Exposure {
   std::vector<Eigen::Isometry3d> poses;            ///< poses in the world, one per body
   Eigen::Vector4f tint = Eigen::Vector4f::Zero();  ///< sRGB colour, and its share
-  double opacity = 0.40;
+  double opacity = 0.40;                           ///< from 0 to 1
 };
 
 /// The colour of a joint by Scene::heat, from amber to red.

@@ -24,11 +24,11 @@ struct BodySurface {
   std::vector<TexturedSurface> textured;
 };
 
-/// The surfaces of all bodies: the visuals of their links. A body without a visual has its
-/// collision shapes, or without any shape sticks to the next joints. If meshes of the robot are
-/// missing, every link without a visual has its collision shapes. A colour that is set on a visual
-/// has priority over the mesh's own colour and its texture. If no colour is given, the surface is
-/// grey.
+/// The surfaces of all bodies: the visuals of their links. A body without a visual is drawn with
+/// its collision shapes. A body without any shape is drawn as sticks to the next joints. If meshes
+/// of the robot are missing, every link without a visual is drawn with its collision shapes. A
+/// colour that is set on a visual has priority over the mesh's own colour and its texture. If no
+/// colour is given, the surface is grey.
 std::vector<BodySurface> robot_surface(const RobotModel& model);
 
 /// The number of bodies that are drawn with more than their visuals.

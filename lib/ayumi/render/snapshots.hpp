@@ -19,8 +19,8 @@ struct StripOptions {
 
   ClipOptions clip;           ///< options of the pictures; their size is that of one snapshot
   std::vector<double> times;  ///< instants [s]; if empty, `count` telling_instants()
-  int count = 8;
-  int columns = 4;
+  int count = 8;              ///< number of snapshots if `times` is empty
+  int columns = 4;            ///< largest number of snapshots in a row
   /// All instants are drawn in one picture, and earlier ones are lighter.
   bool one_picture = false;
 };

@@ -14,9 +14,9 @@ struct Texture {
 
 constexpr int kLargestTexture = 2048;  ///< larger textures are halved until they fit [pixel]
 
-/// The picture in the file that `file` names, or in the bytes after "data:" if it begins with that.
-/// A picture that cannot be read is white, and `notes` says so; a file whose name only differs by
-/// case is taken, and `notes` says that too.
+/// The picture in the file that `file` names, or, if `file` begins with "data:", in the bytes after
+/// that. A picture that cannot be read is white. If there is only a file whose name differs by
+/// case, this file is read. In both cases, `notes` says so.
 Texture read_texture(const std::string& file, std::vector<std::string>& notes);
 
 /// The bytes that read_texture() decodes; empty if there is no such file.

@@ -64,8 +64,8 @@ struct Facet {
   std::array<std::uint32_t, 3> place, look;
   /// Bound below which none of its edges can be removed; 0 if it is not known.
   float least = 0;
-  /// Number of moves after which a triangle beside it was in the way, so that the bound is not
-  /// valid any more when something beside it changes.
+  /// The value of moves_ when a triangle beside this one was found in the way. The bound is not
+  /// valid any more when something beside this triangle has changed since then.
   std::uint32_t blocked = kNever;
   bool gone = false;
 };

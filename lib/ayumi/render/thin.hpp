@@ -11,11 +11,11 @@ namespace ayumi {
 
 /// `surface` with fewer triangles, which lie about `tolerance` [m] from the original ones. A vertex
 /// only moves along an edge onto its other end. Outlines of open surfaces and borders of colours
-/// also stay near their original lines; normals and colours of the corners that stay are kept;
+/// also stay near their original lines. Corners that stay keep their normals and colours, and
 /// closed surfaces stay closed. Pictures on surfaces are not touched. `progress` is called in every
-/// round. `done` is the tolerance of the last call, with which the surface was made; rounds up to
-/// it are left out. The method is that of Garland and Heckbert (1997), with the squared distances
-/// as a mean over the area that a vertex stands for.
+/// round. If the surface was made by an earlier call, `done` is the tolerance of that call; rounds
+/// up to this tolerance are left out. The method is that of Garland and Heckbert (1997); a squared
+/// distance is the mean over the area that belongs to a vertex.
 Triangles thinned(const Triangles& surface, double tolerance, const Progress& progress = {},
                   double done = 0);
 void thin(std::vector<BodySurface>& surface, double tolerance, const Progress& progress = {},

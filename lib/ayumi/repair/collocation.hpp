@@ -1,6 +1,6 @@
 #pragma once
-// The unknowns of the program, which are the free control points of the correction's spline, and
-// the collocation points, which are the samples at which its rows are evaluated.
+// The unknowns of the program are the free control points of the correction's spline. The
+// collocation points are the samples at which the rows of the program are evaluated.
 
 #include <vector>
 

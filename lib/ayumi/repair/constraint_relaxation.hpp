@@ -15,13 +15,13 @@ struct Slacks {
   Eigen::VectorXd unit;    ///< violation of the rows of each slack, for a slack of 1
   Eigen::VectorXd price;   ///< penalty of each slack in the objective, for a slack of 1
   Eigen::VectorXd most;    ///< upper bound of each slack; empty for no bound
-  /// Distance of each slack from the value that the start needs.
+  /// Each slack starts larger by this amount than the start of the program needs.
   double start = repair_policy::solver::kSlackStart;
 };
 
-/// Adds a variable s >= 0 for each slack: its rows become g >= lower - unit s and g <= upper + unit
-/// s, and price . s is added to the objective (the relaxation is exact if the price exceeds the
-/// multipliers). Rows with two bounds appear twice. The result refers to `nlp`, which must outlive
+/// Adds a variable s >= 0 for each slack. Its rows become g >= lower - unit s and g <= upper + unit
+/// s, and price . s is added to the objective. The relaxation is exact if the price exceeds the
+/// multipliers. Rows with two bounds appear twice. The result refers to `nlp`, which must outlive
 /// it.
 Nlp relaxed(const Nlp& nlp, const Slacks& slacks);
 
@@ -43,8 +43,9 @@ Nlp with_all_limits_relaxed(const CorrectionProblem& problem, const Nlp& nlp, do
 
 /// The slack variables that relax the soft goals of `problem`: the ZMP's safe margin down to the
 /// smallest margin, and swings and the planned DCM without a bound. If there are no soft goals,
-/// there are no prices. `robustness` is a factor on the prices. `barrier` is the barrier with which
-/// the solution starts; each slack then needs to be larger accordingly.
+/// smallest margin, and swings and the planned DCM without a bound. If there are no soft goals,
+/// there are no prices. `robustness` is a factor on the prices. `barrier` is the initial barrier
+/// parameter of the solver; with a larger one, the slacks start larger.
 Slacks soft_goal_slacks(const CorrectionProblem& problem, double dt, double robustness,
                         double barrier);
 

@@ -31,7 +31,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-// The derivatives of inverse_dynamics by the tangent become those by the correction.
+// Converts the derivatives of inverse_dynamics() by the tangent into those by the correction.
 void by_correction(const CorrectedMotion& m, InverseDynamicsDerivatives& d) {
   for (Eigen::Index i = 0; i < d.configuration.rows(); ++i) {
     const Eigen::RowVector3d q = d.configuration.block<1, 3>(i, 3),

@@ -3,8 +3,8 @@
 //   minimize    the weighted change (program_hessian.hpp)
 //   subject to  rows of the limits at collocation points (row_placement.hpp)
 //   over        free control points of a spline (collocation.hpp)
-// Derivatives of the rows are exact; the Hessian is that of the objective and, on the ground, the
-// curvature of the rows.
+// Derivatives of the rows are exact. The Hessian is that of the objective plus, while the robot is
+// on the ground, the curvature of the rows.
 
 #include <span>
 #include <vector>

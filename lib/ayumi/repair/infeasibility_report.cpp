@@ -143,7 +143,8 @@ std::string remedy(const InfeasibilityCause& cause) {
   if (cause.time_factor > 1)
     return "stretch this window to " +
            text::fixed(std::ceil(10 * cause.time_factor - 1e-9) / 10, 1) + " times its length";
-  // A reason in words of its own has already stated the fact.
+  // If the reason has words of its own, they have already stated the fact, and only the action
+  // follows.
   const Finding& finding = cause.finding;
   const bool states_fact = spec_of(finding.kind).infeasibility && !finding.action.empty();
   return (states_fact ? finding.action : finding.remedy) +

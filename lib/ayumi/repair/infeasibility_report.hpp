@@ -29,8 +29,8 @@ bool is_matter_of_time(const Finding& finding);
 /// shares of the limit, centimetres or tenths of a radian.
 double severity_of(const Finding& finding);
 
-/// The sum of severities of the errors of a motion, where the worst of each kind and place counts
-/// once, in shares of a limit, centimetres or tenths of a radian. It is 0 if the motion passes.
+/// The sum of the severities (severity_of()) of the errors of a motion. Of each kind and place,
+/// only the worst error counts. It is 0 if the motion passes.
 double total_violation(const ConsistencyReport& report);
 
 /// Solves the last program with every limit relaxed. The motion with the smallest violation,

@@ -82,7 +82,7 @@ namespace collocation {
 inline constexpr int kPerKnot = 2;
 /// A limit has rows where the motion, or an earlier result, uses more than this share of it; the
 /// check of the result tests the other limits. Chosen: at 0 every limit has its rows. Between half
-/// and twice the value, figures change by less than 5 %. Test: none (PlacedRows.* set it to 0).
+/// and twice the value, figures change by less than 5 %. Test: none (ConstraintRows.* set it to 0).
 inline constexpr double kWatchedShare = 0.7;
 /// The normal force has rows where the motion presses with less than this share of the weight.
 /// Chosen. Between half and twice the value, figures change by less than 5 %. Test: none.
@@ -91,9 +91,9 @@ inline constexpr double kLightShare = 0.5;
 /// samples, some of the samples are enough. No measured case changes between half and twice the
 /// value (constants.md). Test: none.
 inline constexpr int kMostPerError = 12;
-/// A row with less room than this (share of its limit, or rad) is active, and rows of the same
-/// limit are put beside it. Chosen. No measured case changes between half and twice the value
-/// (constants.md). Test: none.
+/// A row is active if its distance from its limit is smaller than this (as a share of the limit, or
+/// in rad). Further rows of the same limit are then placed beside it. Chosen. No measured case
+/// changes between half and twice the value (constants.md). Test: none.
 inline constexpr double kActive = 1e-3;
 /// Value of kActive for rows of friction, as a share of the available friction. Reason: the cone
 /// curves. With half of the value, the number of iterations of the case "grip" changes from 95 to
@@ -119,7 +119,7 @@ struct Backoff {
 /// limit by less than this for most faults; the next round corrects the rest. joint_position: no
 /// measured case changes between half and twice the value (constants.md). limit_share,
 /// friction_cone, zmp: between half and twice the value, figures change by less than 5 %. Test:
-/// Repair.NothingNearbyIsCheaper (zmp: it keeps 2.5 mm); PlacedRows.NumbersAreThoseOfTheCheck
+/// Repair.NothingNearbyIsCheaper (zmp: it keeps 2.5 mm); ConstraintRows.NumbersAreThoseOfTheCheck
 /// (shares).
 inline constexpr Backoff kFirstBackoff = {1e-4, 0.998, 0.98, 5e-4};
 /// The distances that every further round adds. Chosen, as above. joint_position, friction_cone: no
@@ -163,7 +163,7 @@ inline constexpr double kLeastNormalForce = 0.1;
 
 /// Size, as a share of the weight, at which the tangential force in the friction row is smoothed,
 /// because its slope has no value at 0. Chosen: small against mu. Between half and twice the value,
-/// figures change by less than 5 %. Test: PlacedRows.NumbersAreThoseOfTheCheck.
+/// figures change by less than 5 %. Test: ConstraintRows.NumbersAreThoseOfTheCheck.
 inline constexpr double kFrictionRounding = 1e-4;
 
 namespace stance {
@@ -192,16 +192,16 @@ inline constexpr double kCornerShare = 0.6;
 /// With half of the value, the change of the case "early" changes from 0.0359 to 0.00589; with
 /// twice, figures change by less than 5 %. Test: none.
 inline constexpr double kSoftTime = 0.05;
-/// Share of the check's tolerance up to which this deviation of the motion is kept. Chosen. Between
+/// Share of the check's tolerance up to which the deviation of kSoftTime is kept. Chosen. Between
 /// half and twice the value, figures change by less than 5 %. Test: none.
 inline constexpr double kSoftShare = 0.6;
-/// Share of the band that is allowed upwards during this time. Reason: a swing must not continue
-/// between two points. With half of the value, the change of the case "early" changes from 0.0359
-/// to 0.057; with twice, to 0.00761. Test: none.
+/// Share of the band of a standing sole that is allowed upwards during kSoftTime. Reason: a swing
+/// must not continue between two points. With half of the value, the change of the case "early"
+/// changes from 0.0359 to 0.057; with twice, to 0.00761. Test: none.
 inline constexpr double kSoftUpwards = 0.4;
-/// Where a contact begins or ends, share of the height at which a swing may continue that the
-/// middle of the sole may have. Chosen: a tenth is 6 micrometres, far above the solver's tolerance.
-/// Test: FromScratch.JumpsOfATallRobotNeedFewPrograms.
+/// Largest height of the middle of a sole at the first and the last sample of a contact, as a share
+/// of the height up to which a swing may continue. Chosen: the remaining tenth is 6 micrometres,
+/// far above the solver's tolerance. Test: FromScratch.JumpsOfATallRobotNeedFewPrograms.
 inline constexpr double kEdgeShare = 0.9;
 /// Half the band in which a locked foot stays on its path [m], [rad]. Derived: the documented
 /// 0.01 mm. Test: Faults.LockedFootKeepsItsWayAndWeightsSteer.
@@ -312,8 +312,9 @@ inline constexpr double kEdgeAllowance = 1e-4;
 inline constexpr double kSameDistance = 1e-6;
 }  // namespace clearance
 
-/// Largest share of a step of the table by which the row of its rate is made stricter. Chosen:
-/// kinks of usual motions give less than 0.01; a jump is repaired by its own rows. Test:
+/// The bound of a joint's rate is reduced where a step of the table would exceed the rate because
+/// of a kink. This is the largest reduction, as a share of the speed limit. Chosen: kinks of usual
+/// motions give less than 0.01; a jump is repaired by its own rows. Test:
 /// FromScratch.JumpsOfATallRobotNeedFewPrograms.
 inline constexpr double kMostBeyond = 0.05;
 
@@ -455,8 +456,9 @@ inline constexpr double kKnownBarrier = 1e-8;
 /// Distance from the bounds to which a start is pushed, and the distance for a warm start. Measured
 /// with the barrier. Test: none.
 inline constexpr double kStartPush = 1e-2, kWarmPush = 1e-6;
-/// The distance from the bounds and the barrier of a warm start, as shares of the largest violation
-/// at the start, if this gives larger values than kWarmPush and the barrier of the last program.
+/// Distance from the bounds and barrier of a warm start, as shares of the largest violation at the
+/// start. They are used if they give larger values than kWarmPush and the barrier of the last
+/// program.
 /// Measured: without them, the fourth program of a jump of SR1, which starts with 0.005, reduced
 /// its violation by 2 % in each iteration and took 76 iterations instead of 31. Test: none.
 inline constexpr double kPushShare = 0.1, kBarrierShare = 0.01;
@@ -491,7 +493,7 @@ inline constexpr double kSlackStart = 0.01;
 inline constexpr double kSlackShare = 0.5;
 /// Steps of the differences by which the load of two feet is derived: of the base [m], of the
 /// ground wrench [N], [N m]. Derived: the cube root of the rounding. Test:
-/// PlacedRows.DerivativesAgainstCentralDifferences.
+/// ConstraintRows.DerivativesAgainstCentralDifferences.
 inline constexpr double kBaseStep = 1e-6, kWrenchStep = 1e-5;
 }  // namespace solver
 
@@ -585,8 +587,8 @@ inline constexpr double kMoved = 1e-6;
 /// No measured case changes between half and twice the value (constants.md). Test:
 /// MotionChange.NamesJointsTimesAndQuantities.
 inline constexpr double kChangeShare = 0.1;
-/// Factor of rounding a control point in a file: nine decimals. Derived: kRounding has six
-/// decimals. Test: none.
+/// Factor of rounding a control point in a file: nine decimals. Derived: this rounding is far below
+/// tighten::kRounding (1e-6). Test: none.
 inline constexpr double kWritten = 1e9;
 }  // namespace report
 

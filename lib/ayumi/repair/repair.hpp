@@ -28,8 +28,8 @@
 
 namespace ayumi {
 
-/// Random control points: joints and base rotation are within +-size [rad], the base within a tenth
-/// of it [m].
+/// Random control points: joints and base rotation are within +-size [rad], and the base position
+/// is within +-0.1 m per radian of `size`.
 struct RandomStart {
   /// Bound of the random control points [rad]; with 0, the search starts as usual.
   double size = 0;
@@ -49,7 +49,7 @@ struct RepairOptions {
   /// not its velocity [s].
   std::vector<std::pair<double, double>> locked_windows;
   std::map<std::string, double> joint_weights;  ///< factors on the cost of moving a joint
-  Trust trust = Trust::posture;
+  Trust trust = Trust::posture;  ///< quantity that is kept where posture, COG and ZMP disagree
   /// Factor on the robustness cost; 0 for the smallest change that passes the check.
   double safety = 1;
   /// Whether a stopped repair concludes with the point of the smallest violation so far.
@@ -114,6 +114,7 @@ struct RepairResult {
   double max_cog_change = 0;    ///< largest change of the COG [m]
   std::string where;            ///< joint that moved most
   double at = 0;                ///< time at which it moved most [s]
+  /// Numbers of variables and constraints in the last round, and of iterations in all rounds.
   int variables = 0, constraints = 0, iterations = 0;
   double constraint_violation = 0;  ///< scaled violation in the last program
   /// Causes if the motion was not repaired, the most severe first.

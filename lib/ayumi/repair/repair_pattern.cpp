@@ -55,8 +55,8 @@ bool has_key(const Pattern& pattern, std::optional<double> Keyframe::*coordinate
                      [&](const Keyframe& key) { return (key.*coordinate).has_value(); });
 }
 
-// Whether the author gives the COG no place along the ground except at both ends, and the ZMP none.
-// A key less than a sample before the end counts as one at the end.
+// Whether the author gives the COG places along the ground at both ends only, and gives the ZMP no
+// place. A key less than a sample before the end counts as one at the end.
 bool has_only_goals(const Pattern& pattern, double dt) {
   const double end = pattern.duration() - dt;
   const auto on_the_way = [&](const Keyframe& key) {
@@ -76,7 +76,7 @@ double longest_flight(const Pattern& pattern) {
   return longest;
 }
 
-// The starts of a plan, and what they are judged by.
+// Makes starts of a generated motion from the plan of a pattern, and judges them by the check.
 class PlanStarts {
  public:
   PlanStarts(const RobotModel& model, const Pattern& pattern, const RepairOptions& options,

@@ -39,12 +39,16 @@ struct GeneratedMotion {
 };
 
 /// Makes a motion from the plan of a pattern alone: the repair of `plan`, which sample_plan() made
-/// of the pattern. If `plan` fails the check and no key gives the COG a height, lower ones are
-/// tried, and the start with the smallest violations is repaired. If COG keys are only goals at
-/// the beginning and the end, the starts whose COG follows the ZMP from one to the other are tried,
-/// too; if there are others, only after the repair failed. Where legs lack joints and neither keys
-/// of the ZMP nor COG keys on the way lead, a COG of least sway is tried. A start that passes the
-/// check is the result as it is.
+/// of the pattern. If `plan` fails the check, other starts are tried, and the start with the
+/// smallest violations is repaired:
+///   - If no key gives the height of the COG, lower heights.
+///   - If the COG keys are only goals at the beginning and the end, a COG that follows the ZMP from
+///     one to the other. If there are COG keys on the way, this is tried only after the repair
+///     failed.
+///   - If legs lack joints, and there are neither keys of the ZMP nor COG keys on the way, a COG of
+///     least sway.
+///   - For a long flight, a longer time over which the feet take up the COG's speed.
+/// A start that passes the check is the result as it is.
 GeneratedMotion generate(const RobotModel& model, const Pattern& pattern, const CommandSeries& plan,
                          const RepairOptions& options, const Progress& progress = {});
 

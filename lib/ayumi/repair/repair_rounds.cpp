@@ -1,7 +1,7 @@
 // Windows are enough because the effect of a correction decays. Its effect on the COG decays as
-// exp(-omega t), with omega of about 6 1/s for a small robot, to 5 % after half a second, and the
-// ZMP margin at the edge of the window absorbs the rest. If this is not enough, the windows grow,
-// at last to the whole motion.
+// exp(-omega t), with omega of about 6 1/s for a small robot, so 5 % are left after half a second.
+// The ZMP margin at the edge of the window absorbs the rest. If this is not enough, the windows
+// grow, at last to the whole motion.
 #include "ayumi/repair/repair_rounds.hpp"
 
 #include <algorithm>

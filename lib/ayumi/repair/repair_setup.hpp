@@ -26,9 +26,9 @@ std::vector<TimeWindow> wrong_plan(const ConsistencyReport& report);
 /// Adds times within the windows of all errors, which are then collocation points.
 void add_error_times(const ConsistencyReport& report, double dt, std::vector<double>& times);
 
-/// The track in the form of a file: numbers with nine decimals, and only the control points and
-/// joints that move, with the three zero points on both sides that a cubic spline needs to begin at
-/// rest.
+/// The track in the form of a file. Numbers have nine decimals. Only the control points and joints
+/// that move are kept, with the three zero points on both sides that a cubic spline needs to begin
+/// at rest.
 CorrectionTrack trimmed(const CorrectionTrack& track);
 
 /// The trimmed track, with control points that are moved by the smallest amount with which nothing

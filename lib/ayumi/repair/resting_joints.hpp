@@ -1,8 +1,8 @@
 #pragma once
 // Joints that rest at the end of their range. A servo target leads its joint by the time L of the
-// servo: with u the distance from the end of the range, it stays within the range if
-// u + L u' >= 0. So u falls at most like exp(-t/L), and a joint that a correction moves away from
-// its end cannot rest there again. Such joints are no variables of a repair.
+// servo. Let u be the distance of the joint from the end of its range. Then the target stays within
+// the range if u + L u' >= 0. So u falls at most like exp(-t/L), and a joint that a correction
+// moves away from its end cannot rest there again. Such joints are no variables of a repair.
 
 #include <vector>
 

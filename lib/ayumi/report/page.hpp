@@ -1,6 +1,6 @@
 #pragma once
-// The fixed texts of the report's page, and the live page for authoring. They are built in from
-// page/.
+// The fixed texts of the report's page, and the live page for authoring. The build embeds them from
+// the folder page/.
 
 #include <string_view>
 

@@ -36,7 +36,7 @@ struct ReportInput {
 };
 
 struct ReportOptions {
-  std::shared_ptr<const RobotLook> look = {};  ///< look of the robot; null for robot_look() of it
+  std::shared_ptr<const RobotLook> look = {};  ///< look of the robot; if null, its robot_look()
   /// snapshots_of_run() of the last run; if null, they are drawn.
   const PngPicture* snapshots = nullptr;
   size_t max_bytes = 8'000'000;   ///< size of the page; replay and pictures are reduced to keep it

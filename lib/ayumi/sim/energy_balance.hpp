@@ -6,7 +6,7 @@ namespace ayumi {
 /// Work done on the robot [J]. The sum of the four is the change of the robot's energy, up to an
 /// error of the integrator of first order in the step.
 struct EnergyBalance {
-  double servos = 0;
+  double servos = 0;    ///< work of the servos
   double contacts = 0;  ///< work of the ground, also when it moves, and of contacts between links
   double outside = 0;   ///< work of pushes
   double joints = 0;    ///< work of friction and end stops of the joints

@@ -14,10 +14,10 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Largest depth below a block's top at which a point stands on the top [m]. A point that is deeper
-/// below the top than this, and deeper than it is behind the side, has hit the side. Chosen: far
-/// above the penetration of a loaded sole (tens of micrometres) and far below the height of a step.
-/// No measured case changes between half and twice the value (constants.md).
+/// Largest depth below a block's top at which a point always stands on the top [m]. A deeper point
+/// has hit the side if it is nearer to the side than to the top. Chosen: far above the penetration
+/// of a loaded sole (tens of micrometres) and far below the height of a step. No measured case
+/// changes between half and twice the value (constants.md).
 constexpr double kLip = 0.001;
 /// Largest depth inside a sole at which an edge touches the sole's face [m]; a deeper edge has hit
 /// the sole's side. Chosen: five times kLip, below the thickness of a sole. No measured case

@@ -119,7 +119,8 @@ void Sensors::draw_numbers(const StepReport& report) {
 Vector3d Sensors::noise(double sigma) {
   const Eigen::Map<const Vector3d> numbers(&numbers_[used_]);
   used_ += 3;
-  // The first number is that of z: the published tables were made in this order.
+  // The first number belongs to z. Published tables were made with this order, so it must not
+  // change.
   return sigma * numbers.reverse();
 }
 

@@ -43,8 +43,8 @@ TorqueRange torque_range(const ActuatorLimits& limits, int dof, double rate);
 /// up to the speed limit, its fall beyond this limit, zero, and the bound by the voltage.
 enum class TorquePiece { peak, fall, none, voltage };
 
-/// One of these pieces in one direction: torque - slope rate, where both signs count in this
-/// direction.
+/// One of these pieces for one direction: the torque is at most torque - slope * rate, where torque
+/// and rate are positive in this direction.
 struct TorqueBound {
   TorquePiece piece = TorquePiece::none;
   double torque = 0;  ///< torque at rest [N m, N]

@@ -17,10 +17,13 @@
 
 namespace ayumi {
 
+/// One control tick. Quantities with the prefix command_, reference_ or measured_ are in the plan
+/// frame, in which the stance foot is at its planned place. All other places, velocities and forces
+/// are true values in the world.
 struct SimulationSample {
   RobotState state;                 ///< true state of the plant
   Eigen::VectorXd target;           ///< servo targets as angles of the joints [rad, m]
-  Eigen::VectorXd torque;           ///< torque that the servos applied [N m]
+  Eigen::VectorXd torque;           ///< torque that the servos applied [N m, N]
   BasePose reference_base;          ///< base of the reference posture
   Eigen::VectorXd reference_theta;  ///< reference posture, without the servo lead [rad, m]
   Eigen::Vector3d cog = Eigen::Vector3d::Zero();   ///< true COG in the world [m]
@@ -33,7 +36,7 @@ struct SimulationSample {
   Eigen::Vector3d measured_zmp = Eigen::Vector3d::Zero();
   double measured_fz = 0;                                    ///< vertical force from load cells [N]
   BasePose command_base;                                     ///< base of the commanded posture
-  Eigen::VectorXd command_theta;                             ///< commanded theta [rad]
+  Eigen::VectorXd command_theta;                             ///< commanded theta [rad, m]
   Eigen::Vector3d command_cog = Eigen::Vector3d::Zero();     ///< commanded p_G [m]
   Eigen::Vector3d command_zmp = Eigen::Vector3d::Zero();     ///< commanded p_Z [m]
   double command_fz = 0;                                     ///< commanded f_z [N]
@@ -48,6 +51,8 @@ struct SimulationSample {
   LawTerms law;             ///< terms from which the reference was made
   TaskResiduals residuals;  ///< residuals of (22), (28)
   Eigen::VectorXd weight;   ///< W of (22), (28), by dof; 0 where nothing was resolved
+  /// By Side: the force of the ground on the foot [N], and its centre of pressure [m], both in the
+  /// world. Without load, the centre of pressure is at the origin of the sole frame.
   std::array<Eigen::Vector3d, 2> foot_force = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   std::array<Eigen::Vector3d, 2> foot_cop = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   /// Planned contact of the left and the right foot.
@@ -116,6 +121,7 @@ struct SimulationResult {
   double max_penetration = 0;  ///< largest penetration of a sole vertex [m]
   double max_slip = 0;  ///< largest slip of a supporting foot while it is planned in contact [m]
   double max_contact_residual = 0;  ///< largest residual of the contact solve [m/s]
+  /// Largest and mean number of iterations of the contact solver in a tick.
   int max_contact_iterations = 0;
   double mean_contact_iterations = 0;
 };

@@ -1,6 +1,6 @@
-// Control tick k consists of: the measurement (with the forces of the step that ended at k dt), the
-// estimate, the controller, the log, and then the integrator steps with constant targets and the
-// disturbances of each step.
+// Control tick k has these parts in order: the measurement (with the forces of the step that ended
+// at k dt), the estimate, the controller, the log, and the integrator steps. During the integrator
+// steps, the targets are constant, and each step has its own disturbances.
 #include "ayumi/sim/simulator.hpp"
 
 #include <algorithm>
@@ -29,10 +29,10 @@ constexpr double kBeforeStart = 0.4;
 /// as an offset of 3 degrees takes (sim/standing_calibration).
 constexpr double kLongestCalibration = 3;
 /// Step of Ayumi's own plant and of the sensors during this time [s]; another plant keeps its tick.
-/// Chosen: the robot hardly moves, and the examination then takes a quarter of the time. Of 200
-/// draws of HOAP-1's uncertainty, 7 decide differently than with 1 ms whether an offset is found,
-/// and another seed of the noise changes 11 or 17 decisions. With half of the step, 1 decides
-/// differently; with twice, 8 (docs/theory_plant.md).
+/// Chosen: the robot hardly moves, and the examination then takes a quarter of the time. In 7 of
+/// 200 draws of HOAP-1's uncertainty, the decision whether an offset is found differs from that
+/// with 1 ms; another seed of the noise changes 11 or 17 of the 200 decisions. With half of this
+/// step, 1 decision differs; with twice, 8 (docs/theory_plant.md).
 constexpr double kCalibrationStep = 0.004;
 /// Simulated time after a fall [s]. Chosen: the robot has reached the ground, which a replay shows.
 /// Between half and twice the value, figures change by less than 5 %.
@@ -227,8 +227,8 @@ const ControlOutput& Simulator::with_targets_of_caller(double t, const ControlOu
   return changed_;
 }
 
-/// The output with the targets that the servos receive: the offsets that were estimated at rest are
-/// added, and the encoders read whole counts if the sensors are as the sidecar describes them.
+/// The output with the targets that the servos receive. The offsets that were estimated at rest are
+/// added. If the sensors are as the sidecar describes them, targets are rounded to whole counts.
 const ControlOutput& Simulator::in_counts(const ControlOutput& out) {
   if (encoder_offset_.size() == 0 && !counts_targets_) return out;
   changed_ = out;

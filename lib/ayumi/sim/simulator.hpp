@@ -49,7 +49,8 @@ class Simulator {
   void send_samples(SampleSink sink) { sink_ = std::move(sink); }
 
   /// Advances by at most `ticks` control ticks. Returns false when the run is over: the series and
-  /// its settling time have passed, or the robot fell some time ago.
+  /// its settling time have passed, or the robot has fallen and the short time after a fall has
+  /// passed.
   bool advance(long ticks, const Progress& progress = {});
 
   long tick() const { return tick_; }  ///< number of ticks that are done

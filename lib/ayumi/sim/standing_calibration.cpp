@@ -41,7 +41,8 @@ constexpr double kLeastLoad = 0.05;
 // 0.6 s, which is slow compared with the rocking of the robot.
 constexpr double kTurnRate = 0.03;
 
-// Rate at which a common tilt of both soles is removed [1/s]. Chosen: slow compared with kTurnRate.
+// Rate at which a common tilt of both soles is removed [1/s]. Chosen: tilts below 0.01 rad are
+// removed more slowly than with kTurnRate.
 constexpr double kLevelRate = 3;
 
 // Time constant of the low pass of the centre of pressure [s]. Chosen: a period of the rocking at
@@ -53,7 +54,7 @@ constexpr double kFilter = 0.03;
 constexpr double kTiltFilter = 0.1;
 
 // Tilt of the soles that counts as level [rad], and time for which the soles have to be at rest
-// [s]. Chosen: 0.2 degrees, by which the estimate of the attitude drifts; the time is twice the
+// [s]. Chosen: 0.2 degrees, by which the estimate of the attitude drifts; the time is 1.8 times the
 // time constant of levelling, so that a sixth of the tilt is left.
 constexpr double kLevel = 0.0035;
 constexpr double kRest = 0.6;

@@ -21,7 +21,7 @@ struct CertifyOptions {
   double failure = 0.01;     ///< the probability p0
   double confidence = 0.95;  ///< confidence of every statement
   long most = 0;             ///< largest number of runs; 0 for ten times failure_free_runs()
-  bool all = false;          ///< all of them are run; the verdict stays that of the sequential test
+  bool all = false;          ///< runs all of them; the verdict stays that of the sequential test
   std::uint64_t seed = 1;
   int threads = 0;  ///< number of threads; 0 for all cores; results do not depend on it
   /// Only the cases whose number divided by `shards` leaves the remainder `shard` are run. All of
@@ -48,9 +48,10 @@ void run_numbers(const UncertainTask& task, const std::vector<long>& numbers,
                  const CertifyOptions& options, KnownResults& results, const ResultsKnown& save,
                  const Progress& progress);
 
-/// Bounds of the quantile 1 - p0 of the largest errors of a run, each with the confidence of the
-/// test. They are computed from the first runs, as many as a certificate without a failure needs.
-/// Runs that fell count as infinitely bad; an infinite value means that there is no bound.
+/// Bounds of the quantile 1 - p0 of the largest errors of a run: COG [m], torque as a share of its
+/// limit, and tilt of a supporting foot [rad]. Each has the confidence of the test. They are
+/// computed from the first runs, as many as a certificate without a failure needs. Runs that fell
+/// count as infinitely bad; an infinite value means that there is no bound.
 struct QuantileBounds {
   double cog_error = 0, torque = 0, foot_tilt = 0;
   long runs = 0;  ///< number of runs; 0 if the test stopped before

@@ -19,8 +19,9 @@ namespace ayumi {
 
 namespace {
 
-// Share of the room between standing still and a limit that a timing may use at first. Chosen: the
-// remaining share is larger than the effect of the smoothing and of the ticks between two points.
+// Share of the distance between standing still and a limit that a timing may use at first. Chosen:
+// the remaining share is larger than the effect of the smoothing and of the ticks between two
+// points.
 constexpr double kFirstShare = 0.97;
 // Factor by which this share is reduced around an error of the check: the limit divided by the
 // value, within these bounds, and the time to either side [s of the path]. Chosen: one to three
@@ -117,9 +118,9 @@ class LocalSearch {
   }
 
   // A timing keeps the ZMP near the edge of a sole, and torques near their limits, for longer than
-  // the uniform pace, so the robot may fall although it stands at that pace. No margin foretells
-  // this: HOAP-1 may fall with its ZMP 15 mm inside its soles. Other timings, whose ZMP need not be
-  // so far inside in the double support, are tried then, and finally the uniform pace.
+  // the uniform pace, so the robot may fall although it stands at that pace. No margin predicts
+  // this: HOAP-1 may fall with its ZMP 15 mm inside its soles. Then timings are tried whose ZMP
+  // need not be so far inside in the double support, and finally the uniform pace.
   void stand_if_path_stands() {
     const double half = half_sole_width(model_);
     try {
@@ -471,7 +472,7 @@ class LocalSearch {
   CommandSeries path_;
   std::optional<PathLimits> limits_;
   Timing timing_;
-  std::vector<double> share_;  // share of the room that may be used, by point
+  std::vector<double> share_;  // share of the distance to a limit that may be used, by point
   bool stuck_ = false;         // the limits contradict each other
   int trial_ = 0;              // the trial of the search (see search())
 };

@@ -1,11 +1,11 @@
 #pragma once
 // The quickest timing along a motion: it slows the motion only where a limit binds. The path is the
-// motion at the fastest uniform pace at which all of it is within the limits, because the COG that
-// is solved from the ZMP depends on the pace. Along the path, math/path_timing finds the quickest
-// timing within the rows of study/path_limits, which is then made smooth, sampled and checked.
-// Where the check finds an error, a smaller share of the limits may be used, and the next round
-// begins. If the robot has to stand where it stands at the uniform pace, the motion is simulated in
-// open loop, too.
+// motion at the fastest uniform pace at which all of it is within the limits. It is not the motion
+// as it was given, because the COG that is solved from the ZMP depends on the pace. Along the path,
+// math/path_timing finds the quickest timing within the rows of study/path_limits. This timing is
+// then made smooth, sampled and checked. Where the check finds an error, a smaller share of the
+// limits may be used, and the next round begins. If the caller gives a ground, the motion is also
+// simulated in open loop: the robot has to stand if it stands at the uniform pace.
 //
 // Where nothing moves, no limit binds: such pauses keep their length, or are passed at the largest
 // pace.

@@ -31,8 +31,8 @@ constexpr double kStepX = 1e-3, kStepU = 1e-2;
 // Chosen: the same as in a repair, and small against mu.
 constexpr double kConeRounding = 1e-4;
 
-// A row counts as active if its remaining room is below this share of the sum of the sizes of its
-// terms. Chosen: the step from point to point moves a row by about as much.
+// A row counts as active if its distance from its bound is below this share of the sum of the sizes
+// of its terms. Chosen: the step from point to point moves a row by about as much.
 constexpr double kBinds = 0.01;
 
 // Definition: the name that the rows have in limits/support.cpp.

@@ -3,9 +3,9 @@
 // same postures have
 //   dq = q_s s',   ddq = q_s s'' + q_ss s'^2,
 // so that inverse dynamics is F = F_0 + F_u u + F_x x with u = s'' and x = s'^2. The rows of all
-// limits of rates and forces, those that a repair keeps (limits/row.hpp), become rows in (u, x):
-// those of accelerations and of the ground wrench's linear parts exactly, the others by their
-// tangents at the timing of the round before.
+// limits of rates and forces that a repair keeps (limits/row.hpp) become rows in (u, x). Rows of
+// accelerations and of the linear parts of the ground wrench become so exactly; the others are
+// replaced by their tangents at the timing of the round before.
 
 #include <string>
 #include <vector>
@@ -49,10 +49,10 @@ class PathLimits {
   /// The points of the path. They have rows after linearize().
   const std::vector<TimingPoint>& points() const { return timing_; }
 
-  /// Makes the rows about a timing with these u and x by point. `share` gives, by point, the part
-  /// of the room between standing still and a limit that may be used. In a motion with a flight,
-  /// bounds are raised where necessary, so that the path's own pace (u = 0, x = 1) satisfies all
-  /// rows; no other pace is possible in flight.
+  /// Makes the rows about a timing with these u and x by point. `share` says for each point how
+  /// much of the distance between standing still and a limit may be used. In a motion with a
+  /// flight, bounds are raised where necessary, so that the path's own pace (u = 0, x = 1)
+  /// satisfies all rows; no other pace is possible in flight.
   void linearize(const std::vector<double>& u, const std::vector<double>& x,
                  const std::vector<double>& share);
 

@@ -36,10 +36,10 @@ namespace {
 /// recovery in the push while walking takes 0.054 s instead of 0.019 s; with twice, the recovery in
 /// the push while standing takes 0 s instead of 0.019 s.
 constexpr double kNearPlan = 0.045;
-/// Size of the inner part of the set around the unpushed run, as a share of the set. Measured: in
-/// 12 motions without sensor noise and with pushes of up to 2.2 B, runs that have been in this part
-/// later leave the whole set in one motion, by at most 0.56 of its bounds; in the others, they stay
-/// inside 0.83 of it (docs/measurements/pushes.md, "Early verdicts").
+/// Size of the inner part of the set around the unpushed run, as a share of the set. Measured in 12
+/// motions without sensor noise and with pushes of up to 2.2 B: in one motion, runs that have been
+/// in this part leave the whole set later, by at most 0.56 of its bounds. In the other motions,
+/// such runs stay inside 0.83 of the set (docs/measurements/pushes.md, "Early verdicts").
 constexpr double kWellInside = 1.0 / 3;
 /// Tilt beyond which a stance foot is tilted [rad]. Chosen: above the tilt that the compliance of a
 /// loaded sole allows. No measured case changes between half and twice the value (constants.md).

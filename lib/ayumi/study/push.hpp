@@ -80,6 +80,7 @@ double push_froude(const PushCase& push, double impulse);
 
 /// Figures over a group of cases, in capture bounds.
 struct PushSummary {
+  /// Smallest and mean limit with the controller, and the same in open loop.
   double worst = 0, mean = 0, open_worst = 0, open_mean = 0;
   double worst_speed = 0, mean_speed = 0;    ///< J/m of the worst case, and the mean [m/s]
   double worst_froude = 0, mean_froude = 0;  ///< J/(m sqrt(g z)) of the worst case, and the mean
@@ -90,9 +91,9 @@ struct PushSummary {
 
 /// The default phases: standing, and for the middle step on the left foot the middle of the double
 /// support before it and 11, 44 and 78 % of the single support. A pattern without such a step gets
-/// standing and its middle. A pattern with VIIP goals gets the middle of the double support and 25
-/// and 75 % of the single support of the middle step that VIIP makes under `options`, with the
-/// gains of their controller if that is viip.
+/// standing and its middle. A pattern with VIIP goals gets, for the middle step that VIIP makes
+/// under `options`, the middle of the double support and 25 and 75 % of the single support. VIIP
+/// then has the gains of the controller of `options`, if this controller is viip.
 std::vector<PushPhase> default_push_phases(const RobotModel& model, const CommandSeries& series,
                                            const SimulateOptions& options);
 

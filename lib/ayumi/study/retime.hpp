@@ -24,15 +24,16 @@ struct FastestPace {
   bool bounded = false;     ///< false if even `fastest` passes
   std::string limited_by;   ///< first error at the scale just below, in words
   bool by_posture = false;  ///< this error is in the posture of a table, which no pace changes
-  int evaluations = 0;
+  int evaluations = 0;      ///< number of scales that were sampled and checked
 };
 
 /// Bisection between a scale that passes the check and one that does not. The search begins at 1.
 /// It goes faster by factors of 1.25 while scales pass; otherwise it goes slower by factors of
-/// 1.05, or by a larger step if a joint is much too fast. From the fastest scale that passes, it
-/// also tries faster scales in steps of 0.5 % (down to 0.82 of this scale), because a pattern with
-/// flights may pass again there, and it continues from the fastest of these that passes. A scale
-/// that cannot be sampled does not pass. Throws Error(usage) for a resolution out of bounds.
+/// 1.05, or by a larger step if a joint is much too fast. A pattern with flights may pass again at
+/// a faster scale than one that fails. So the search also tries scales in steps of 0.5 % beyond the
+/// fastest scale that passes, down to 0.82 of it, and continues from the fastest of these that
+/// passes. A scale that cannot be sampled does not pass. Throws Error(usage) for a resolution out
+/// of bounds.
 FastestPace fastest_pace(const RobotModel& model, const Pattern& pattern,
                          const RetimeOptions& options, const Progress& progress = {});
 

@@ -113,9 +113,9 @@ SubsetResult subset_simulation(size_t dimension,
     result.levels.push_back(next);
     result.reached = next >= threshold;
     if (result.reached || level + 1 >= options.levels) break;
-    // Samples above the level start the chains. If equal severities give more of them than are
-    // needed, one is taken at equal intervals, so that the choice does not depend on the severity.
-    // The chains have such lengths that the number of samples is kept.
+    // Samples above the level start the chains. If equal severities give more of these samples than
+    // are needed, samples at equal intervals are taken, so that the choice does not depend on the
+    // severity. The chains have such lengths that the number of samples is kept.
     std::vector<size_t> starts;
     for (size_t i = 0; i < samples.size(); ++i)
       if (above[i]) starts.push_back(i);

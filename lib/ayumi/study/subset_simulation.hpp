@@ -1,10 +1,11 @@
 #pragma once
 // The probability of rare failures by subset simulation (S.-K. Au, J. L. Beck, "Estimation of small
 // failure probabilities in high dimensions by subset simulation", 2001). The rare event is divided
-// into a chain of likelier ones: the severity of a run exceeds a level that a tenth of the samples
-// exceeds, then the next level among those, and so on up to the level of a failure. The samples of
-// a level come from Markov chains that start at the worst samples of the level before.
-// docs/certify.md, "Rare failures", explains it.
+// into a chain of events that are likelier. The first event is that the severity of a run exceeds a
+// level that a tenth of the samples exceeds. The next level is exceeded by a tenth of those
+// samples, and so on up to the level of a failure. The samples of a level come from Markov chains
+// that start at the worst samples of the level before. docs/certify.md, "Rare failures", explains
+// it.
 
 #include <functional>
 

@@ -13,7 +13,7 @@ namespace ayumi {
 /// push.
 struct TuneOptions {
   /// Bounds of the options. Chosen: pushes of more than 5 capture bounds fell the robot with any
-  /// gains, so they do not tell gains apart; 50 rounds take a day.
+  /// gains, so they do not show which gains are better; 50 rounds take a day.
   static constexpr Bounds kLevel = {0.01, 5, "capture bounds"}, kRounds = {1, 50};
 
   std::vector<PushPhase> phases;  ///< phases; if empty, default_push_phases()
@@ -35,9 +35,9 @@ struct TuneOptions {
 /// that fells the robot, plus the mean of |ZMP - reference ZMP| / z of the run without a push.
 struct TuneFigures {
   double objective = 0;
-  double recovery = 0;  ///< part of the objective from the pushes that the robot survives
-  double unpushed = 0;  ///< part of the objective from the run without a push
-  int falls = 0, pushes = 0;
+  double recovery = 0;        ///< part of the objective from the pushes that the robot survives
+  double unpushed = 0;        ///< part of the objective from the run without a push
+  int falls = 0, pushes = 0;  ///< numbers of pushes that fell the robot, and of all pushes
 };
 
 struct TuneResult {

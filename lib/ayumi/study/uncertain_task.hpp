@@ -24,8 +24,8 @@ struct DrawnValue {
   const UncertainQuantity* quantity = nullptr;
   std::vector<int> targets;           ///< links or dofs that have this value
   int push = -1;                      ///< index of the push to which it belongs
-  size_t own = 0;                     ///< number of its own normal number
-  std::optional<size_t> factor = {};  ///< number of the normal number of its factor
+  size_t own = 0;                     ///< index of its own random number in CaseNumbers::normal
+  std::optional<size_t> factor = {};  ///< index of the random number of its factor
 };
 
 /// All random numbers of one case: independent standard normal ones, and the seed of the noise of

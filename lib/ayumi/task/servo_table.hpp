@@ -1,8 +1,8 @@
 #pragma once
-// Tables of servo targets, made for the servos of a profile. A table holds the plain posture; or
-// the posture ahead by the lag of the servo (motion/servo_feedforward); or this posture with an
-// additional offset that compensates for the servo's sag under the torque of the motion
-// (control/torque_feedforward).
+// Tables of servo targets, made for the servos of a profile. A table has one of three contents: the
+// plain posture, the posture ahead by the lag of the servo (motion/servo_feedforward), or this
+// posture with an additional offset that compensates for the servo's sag under the torque of the
+// motion (control/torque_feedforward).
 
 #include <string>
 #include <vector>
@@ -27,8 +27,8 @@ TableServo table_servo(const RobotModel& model, const std::string& profile, Serv
 ReferenceTrajectory table_of_series(const RobotModel& model, const std::string& profile,
                                     const CommandSeries& series, ServoContent content);
 
-/// Appends the row of one sample for a table of a run with its posture or with the lead. The row
-/// has the reference posture instead of the target. The rest is to be filled in later.
+/// Appends the row of one sample for table_of_postures(). Until then, the row has the reference
+/// posture in place of the target.
 void append_posture(const SimulationSample& sample, ReferenceTrajectory& postures);
 
 /// The table of the postures of a run, ahead by the lag of the servos of the profile, as

@@ -57,7 +57,7 @@ Provenance provenance(const Task& task, const std::string& controller,
                       const std::string& command_line = "");
 
 /// The verdict on the pattern: that of check_consistency(), and whether the actuators suffice for
-/// the goals of VIIP as well. `observe` sees the samples of the task.
+/// the goals of VIIP as well. `observe` is called with the samples of the task.
 Judgement judge(const Task& task, const CheckOptions& options, const SampleObserver& observe = {});
 Judgement judge(const Task& task);
 

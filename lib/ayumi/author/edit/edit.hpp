@@ -20,16 +20,17 @@ Pattern baked(const RobotModel& model, const Pattern& pattern, const CommandSeri
 
 /// Map of a robot to its mirror image about its x z plane.
 struct MirrorMap {
-  std::vector<int> dof;   ///< the dof on the other side; the same dof for one in the middle
-  std::vector<int> sign;  ///< +1 or -1: sign of theta in the image
-  std::vector<int> link;  ///< the link on the other side
+  std::vector<int> dof;   ///< by dof: its counterpart; a dof in the middle has itself
+  std::vector<int> sign;  ///< by dof: factor on theta in the image, +1 or -1
+  std::vector<int> link;  ///< by link: its counterpart
 };
-/// Throws Error(bad_model) that names the joint without a counterpart within 5 mm.
+/// Throws Error(bad_model) with the name of the joint if no joint has its axis within 5 mm of the
+/// mirror image of this joint's axis.
 MirrorMap mirror_map(const RobotModel& model);
 
-/// Exchanges left and right in feet, joints, y coordinates, pushes, table and correction. Mirrored
-/// twice, a pattern is unchanged. Throws the same errors as mirror_map(), and Error(bad_pattern)
-/// for an unknown joint.
+/// The mirror image of a pattern: left and right are exchanged in feet, joints, y coordinates,
+/// pushes, table and correction. A pattern that is mirrored twice is unchanged. Throws the same
+/// errors as mirror_map(), and Error(bad_pattern) for an unknown joint.
 Pattern mirrored(const RobotModel& model, const Pattern& pattern);
 
 /// The pattern with all times multiplied by `scale`. f_z keys get the vertical acceleration of the
@@ -58,9 +59,9 @@ struct TimeCourse {
 
 /// The motion with another timing, as a table of posture and base (COG, ZMP and f_z are those of
 /// the full model). `series` holds the samples of the pattern, between which the postures follow
-/// their rates and accelerations. Phases, pushes, weights and windows move along. The feet are
-/// planned where the joints have them, because the path of a planned swing has a fixed timing.
-/// Throws the same errors as baked().
+/// their rates and accelerations. The times of phases, pushes, weights and windows change with the
+/// motion. The paths of the feet are planned as the joint angles give them, because a planned swing
+/// would have a timing of its own. Throws the same errors as baked().
 Pattern with_course(const RobotModel& model, const Pattern& pattern, const CommandSeries& series,
                     const TimeCourse& course, const std::string& table);
 
@@ -71,17 +72,19 @@ struct KeyEdit {
   bool copy = false;              ///< the keyframe also stays at its old time
   bool mirror = false;            ///< left and right are exchanged at the new time
 };
-/// A keyframe that is moved to the time of another one is merged with it. For a track that both
-/// have, the moved keyframe counts. Throws Error(usage) for a time without a keyframe or beyond the
-/// phases, and the same errors as mirror_map().
+/// The pattern after the edit. A keyframe that is moved to the time of another keyframe is merged
+/// with it. If both have a value for the same track, the value of the moved keyframe is kept.
+/// Throws Error(usage) if there is no keyframe at the time, or if the new time is beyond the phases
+/// or inside a VIIP phase, and the same errors as mirror_map().
 Pattern with_key_edited(const RobotModel& model, const Pattern& pattern, const KeyEdit& edit);
 
-/// The pattern and its mirror image in turn, `times` in all, so that one step becomes a walk: each
-/// part begins with the feet in the places in which the previous part ends. Swings become steps
-/// relative to the other foot, the last of which brings the feet beside each other when `close`.
-/// Points on the ground move with the foot that carries the robot in the first swing. Throws
-/// Error(bad_pattern) for a pattern with a table, a correction, VIIP phases or foot keys, or
-/// without a swing, Error(usage) unless `times` is 2 to 1000, and the same errors as mirror_map().
+/// The pattern and its mirror image alternately, `times` parts in total, so that one step becomes a
+/// walk. Each part begins with the feet in the places in which the previous part ends. Swings
+/// become steps relative to the other foot. If `close` is true, the last step brings the feet
+/// beside each other. Points on the ground move with the foot that carries the robot in the first
+/// swing. Throws Error(bad_pattern) for a pattern with a table, a correction, VIIP phases or foot
+/// keys, or without a swing, Error(usage) unless `times` is 2 to 1000, and the same errors as
+/// mirror_map().
 Pattern alternated(const RobotModel& model, const Pattern& pattern, int times, bool close = true);
 
 /// A pattern and its samples.
@@ -100,12 +103,12 @@ struct MotionPart {
 Pattern joined(const RobotModel& model, const MotionPart& first, const MotionPart& second,
                double over, const std::string& table);
 
-/// Two patterns in sequence as a pattern with keys (joined() makes a table of samples): keys,
-/// phases and scenario of the second pattern are moved in place and time; at the join, each track
+/// Two patterns in sequence as a pattern with keys, while joined() makes a table of samples. Keys,
+/// phases and scenario of the second pattern are moved in place and time. At the join, each track
 /// of either pattern gets a key with its value. Throws the same errors as joined(), and
-/// Error(bad_pattern) with the reason if keys cannot express the joined motion: a table, a
-/// correction, VIIP phases, legs led by joints, a foot that has keys in one pattern and swings in
-/// the other, and tracks of COG or ZMP that only one of the patterns has.
+/// Error(bad_pattern) with the reason if keys cannot express the joined motion. Such reasons are a
+/// table, a correction, VIIP phases, legs that follow keys of joints, a foot that has keys in one
+/// pattern and swings in the other, and tracks of COG or ZMP that only one of the patterns has.
 Pattern chained(const RobotModel& model, const MotionPart& first, const MotionPart& second,
                 double over);
 
@@ -121,8 +124,8 @@ struct LoopGap {
 };
 /// Throws Error(bad_pattern) if a foot is in the air at the beginning or at the end.
 LoopGap loop_gap(const RobotModel& model, const MotionPart& motion);
-/// A motion is closed if every difference is below the value here (and soles turn by less than
-/// 0.01 rad). `joint` is empty.
+/// The bounds of a closed motion: each of its differences is below the value here, and its soles
+/// turn by less than 0.01 rad. `joint` is empty.
 LoopGap largest_loop_gap();
 
 struct Ramps {

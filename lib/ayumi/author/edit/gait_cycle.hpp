@@ -1,8 +1,8 @@
 #pragma once
-// The part of a walk that repeats: two steps, from the middle of the double support before the
-// swing of one foot to the middle of the double support before the next swing of the same foot. At
-// both times the robot has the same posture and rates, moved over the ground, if the cycle is so
-// far from the start and the end of the walk that they no longer affect it.
+// The part of a walk that repeats, which is two steps. It lasts from the middle of the double
+// support before the swing of one foot to the middle of the double support before the next swing of
+// this foot. At both times the robot has the same posture and rates, moved over the ground, if the
+// cycle is so far from the start and the end of the walk that they no longer affect it.
 
 #include <Eigen/Core>
 #include <string>
@@ -27,13 +27,13 @@ GaitCycle gait_cycle(const RobotModel& model, const MotionPart& motion, int swin
 
 /// The samples of a walk, changed so that the end of the cycle equals its beginning (moved over the
 /// ground) to the last digit. The difference is spread smoothly over the cycle and fades out after
-/// it, because a sudden displacement of 0.1 um within a millisecond moves the ZMP by millimetres. A
-/// difference that is too large for a loop still shows in `gap` of the cycle.
+/// it, because a sudden displacement of 0.1 um within a millisecond moves the ZMP by millimetres.
+/// If the difference is too large for a loop, `gap` of the cycle still shows it.
 CommandSeries with_closed_cycle(const CommandSeries& series, const GaitCycle& cycle);
 
-/// The samples `first` to `last` of a motion, such as a cycle, as a motion of its own: a table of
-/// posture and base (COG, ZMP and f_z are those of the full model), with the phases, weights and
-/// disturbances of this time. Throws Error(usage) for samples that are not there,
+/// The samples `first` to `last` of a motion, such as a cycle, as a motion of its own. The result
+/// is a table of posture and base with the phases, weights and disturbances of this time; COG, ZMP
+/// and f_z are those of the full model. Throws Error(usage) for samples that are not there,
 /// Error(bad_pattern) if a foot is in the air at the first or the last sample, and the same errors
 /// as baked().
 Pattern cut(const RobotModel& model, const MotionPart& motion, long first, long last,

@@ -47,7 +47,7 @@ constexpr double kSameJoint = 2e-4;
 /// that moves by kSameJoint in a millisecond.
 constexpr double kSameRate = 1e3 * kSameJoint;
 /// Time within which such a difference fades after the join [s]. Chosen: the acceleration is then
-/// at most 0.12 rad/s^2; within one tick of 1 ms, it would be 200 rad/s^2, and even a difference of
+/// at most 0.12 rad/s^2. Within one tick of 1 ms, it would be 200 rad/s^2, and even a difference of
 /// 1e-5 rad in the legs would move the ZMP out of the soles.
 constexpr double kFade = 0.1;
 /// A smaller difference is rounding and does not fade. Chosen: in one tick it means 1e-3 rad/s^2.
@@ -234,7 +234,7 @@ bool has_keys(const Pattern& pattern, Side side) {
 // of this foot in the other part become keys along the same path. The posture stays that of the
 // table.
 void write_swings_as_keys(const RobotModel& model, Side side, Pattern& pattern) {
-  // Keys of one swing; chosen: between them, its curve differs by less than 0.1 mm.
+  // Number of keys of one swing. Chosen: between the keys, the curve differs by less than 0.1 mm.
   constexpr int kKeys = 16;
   const FootPlan feet(model, pattern);
   std::vector<Keyframe> keys = std::move(pattern.keyframes);
@@ -400,7 +400,7 @@ Keyframe keys_at(const RobotModel& model, const KeyedTracks& of, double t, const
   if (tracks.zmp) {
     ZmpKey zmp;
     zmp.point = {(*tracks.zmp)[0].at(t).value, (*tracks.zmp)[1].at(t).value};
-    // Equality except for rounding.
+    // This tolerance [m] covers rounding only.
     if ((zmp.point - of.feet.support_center(t).head<2>()).norm() < 1e-9)
       zmp.place = ZmpKey::Place::center;
     key.zmp = zmp;
@@ -519,8 +519,8 @@ Pattern chained(const RobotModel& model, const MotionPart& first, const MotionPa
   const double end = first.pattern.phases.back().until, later = end + over;
   Keyframe at_end = keys_at(model, one, end, two);
   // A spline through equal values does not rest between them, but a segment with minimum jerk does.
-  // A key that its author wrote at the end keeps its interpolation; after it, a foot needs no key
-  // before that of the start.
+  // If the author wrote a key at the end of the first pattern, this key keeps its interpolation. In
+  // this case, a foot without a value in the key gets none before the start of the second pattern.
   const bool curved = first.pattern.interpolation == Interpolation::spline ||
                       first.pattern.interpolation == Interpolation::cubic;
   const Keyframe* const written =
@@ -538,7 +538,8 @@ Pattern chained(const RobotModel& model, const MotionPart& first, const MotionPa
   for (const auto& [link, led] : two.hands) at_start.hands[link] = {};
   if (two.gaze) at_start.gaze = LinkTarget{};
   const auto move = [&](Keyframe& key) {
-    // Places that are moved are rounded so that they print as they would be written [1/m], [1/rad].
+    // Moved places are rounded to this number of parts of a metre or a radian, so that they are
+    // printed as an author would write them.
     constexpr double kParts = 1e9;
     move_key(shift, key);
     for (auto& foot : key.feet) {

@@ -1,7 +1,7 @@
 // Edits of keyframes, and a step that alternates with its mirror image. Each repetition begins
-// where the supporting foot stands at that time: with the pose S of this foot at the beginning of
-// the pattern (or of its mirror image) and its pose S_k at the beginning of repetition k, points
-// move by S_k S^-1.
+// where the supporting foot stands at that time. S is the pose of this foot at the beginning of the
+// pattern (or of its mirror image), and S_k its pose at the beginning of repetition k. Points move
+// by S_k S^-1.
 #include <algorithm>
 #include <cmath>
 

@@ -17,13 +17,13 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Largest distance of a joint from the image of its counterpart [m]. Chosen: above the asymmetry
-/// of real robots, below the distance of two joints of one limb.
+/// Largest distance of a joint's axis from the mirror image of its counterpart's axis [m]. Chosen:
+/// above the asymmetry of real robots, below the distance of two joints of one limb.
 constexpr double kAlike = 0.005;
 /// Smallest cosine of the angle between an axis and the mirror image of its counterpart; the value
 /// is the cosine of 8 deg.
 constexpr double kParallel = 0.99;
-/// What the name of an included posture ends with when the pattern gets its image.
+/// Ending of the name that the mirror image of an included posture gets in the pattern.
 constexpr std::string_view kImageEnding = "_mirrored";
 
 Vector3d image(const Vector3d& p) { return {p.x(), -p.y(), p.z()}; }
@@ -150,17 +150,17 @@ class Mirror {
     return pattern_.posture_files.contains(posture);
   }
 
-  // The postures of the pattern itself get the angles of their images. Those of a posture library
-  // stay, because other patterns include it, too; where one of them is used, the posture that is
-  // its image is named in its place.
+  // The postures of the pattern itself get the angles of their images. The postures of a posture
+  // library stay as they are, because other patterns include the library, too. Where the pattern
+  // uses such a posture, the name of its mirror image is written instead.
   void mirror_postures(Pattern& result) const {
     for (auto& [name, joints] : result.postures)
       if (!is_included(name)) joints = of(joints, "/postures/" + json_pointer_token(name));
     std::vector<std::string*> uses = {&result.default_posture};
     for (Keyframe& key : result.keyframes)
       if (key.posture) uses.push_back(&*key.posture);
-    // An own posture may be the image of an included one. It goes first, because its name is then
-    // free for the image of the included one.
+    // A posture of the pattern itself may be the mirror image of an included posture. It is handled
+    // first, because its name is then free for the image of the included posture.
     std::map<std::string, std::string> images;
     for (const bool included : {false, true})
       for (const std::string* const name : uses)
@@ -173,7 +173,8 @@ class Mirror {
   std::string image_of_used(Pattern& result, const std::string& name) const {
     if (is_included(name)) return image_of_included(result, name);
     mirror_robot_posture(result, name);
-    // An image of an included posture that was made by mirroring is this posture again.
+    // If an earlier mirroring has made this posture from an included posture, its image is that
+    // included posture.
     const auto own = result.postures.find(name);
     if (own == result.postures.end() || !name.ends_with(kImageEnding)) return name;
     const std::string origin = name.substr(0, name.size() - kImageEnding.size());
@@ -195,8 +196,8 @@ class Mirror {
     return fresh;
   }
 
-  // A posture of the robot that is not symmetric gets its image in the pattern under the same name.
-  // An image that equals the robot's posture again is removed.
+  // If a posture of the robot is not symmetric, the pattern gets its mirror image under the same
+  // name. If this image equals the robot's posture again, it is removed from the pattern.
   void mirror_robot_posture(Pattern& result, const std::string& name) const {
     if (!model_.has_posture(name)) return;
     const VectorXd theta = model_.posture(name);
@@ -268,8 +269,8 @@ class Mirror {
     if (key.gaze) key.gaze = of(*key.gaze);
   }
 
-  // Columns keep their order if the table has both sides. Otherwise they get the name of the other
-  // side.
+  // If the table has the joints of both sides, its columns keep their order. Otherwise, the columns
+  // get the names of the joints on the other side.
   void mirror(DenseTable& table) const {
     const std::string inside = "table " + table.file;
     const Eigen::MatrixXd theta = table.theta;
@@ -357,7 +358,8 @@ class Mirror {
     bias.tilt.x() *= -1;
     bias.gyro = axial_image(bias.gyro);
   }
-  /// An offset of all joints keeps its sign: it is one number for joints of both signs.
+  /// An offset of all joints keeps its sign, because one number cannot change its sign for some
+  /// joints only.
   void mirror(EncoderOffset& fault) const {
     const int dof = model_.find_dof(fault.joint);
     if (dof >= 0) fault.offset *= map_.sign[dof];

@@ -91,9 +91,10 @@ World stairs(const RobotModel& model, const WalkParameters& p) {
 }
 
 // Smallest lift of a swing [m], if the robot is not so small that its usual lift is lower. Reason:
-// with a lower one, the foot of a robot with short legs scrapes the ground in its longest step
-// (limits/foot_scrape.cpp; the longest swing of a leg of 0.2 m is 0.24 m, and needs 1.9 mm). For
-// legs of more than 0.2 m, a hundredth of the leg is more. Test: FootScrape.TheLowestLiftPasses.
+// with a lower lift, the foot of a robot with short legs scrapes the ground in its longest step
+// (limits/foot_scrape.cpp). The longest swing of a leg of 0.2 m is 0.24 m, and it needs a lift of
+// 1.9 mm. For legs of more than 0.2 m, a hundredth of the leg is more. Test:
+// FootScrape.TheLowestLiftPasses.
 constexpr double kLeastLift = 0.002;
 
 void check_parameters(const RobotModel& model, const WalkParameters& p) {

@@ -7,7 +7,7 @@
 namespace ayumi {
 
 struct WalkParameters {
-  int steps = 8;                 ///< steps that move; one more step brings the feet together
+  int steps = 8;                 ///< steps that move the robot; one more brings the feet together
   double stride = 0.03;          ///< forward distance between successive footholds [m]
   double period = 0.55;          ///< duration of one step, single and double support together [s]
   double double_support = 0.18;  ///< double support as a fraction of the period
@@ -16,8 +16,8 @@ struct WalkParameters {
   double cog_height = 0;
   double turn = 0;  ///< yaw change per step, left positive [rad]
   double side = 0;  ///< sideways distance per pair of steps, left positive [m]
-  /// Height of a stair [m]; if not 0, every stride leads to the next stair, the other foot follows,
-  /// and the world has the stairs.
+  /// Height of a stair [m]; if it is not 0, every stride leads to the next stair, the other foot
+  /// follows onto the same stair, and the pattern's world contains the stairs.
   double rise = 0;
   /// Distance by which the ZMP is moved from the middle of the standing sole towards the other
   /// foot, so that the COG sways less [m].
@@ -47,11 +47,12 @@ Pattern walk_pattern(const RobotModel& model, const WalkParameters& parameters);
 /// starting_height() is used [m].
 Pattern stand_pattern(const RobotModel& model, double duration, double cog_height = 0);
 
-/// The COG moves to and fro over both feet; every part starts and ends at rest.
+/// The COG moves from side to side, or forward and back, over both feet; every part starts and ends
+/// at rest.
 struct SwayParameters {
   double side = 0.02;   ///< distance to either side of the middle [m]
   double forward = 0;   ///< distance to the front and back of the middle [m]
-  double period = 2.0;  ///< duration of one movement to and fro [s]
+  double period = 2.0;  ///< duration of one movement there and back [s]
   int cycles = 2;
   double cog_height = 0;  ///< height of the COG; 0 for starting_height() [m]
 };
@@ -105,11 +106,11 @@ struct BowParameters {
 BowParameters bow_defaults(const RobotModel& model);
 Pattern bow_pattern(const RobotModel& model, const BowParameters& parameters);
 
-/// A hand is raised beside the head, goes to and fro, and comes back.
+/// A hand is raised beside the head, waves, and comes back.
 struct WaveParameters {
   Side side = Side::right;
   int cycles = 3;
-  double period = 0.6;    ///< duration of one movement to and fro [s]
+  double period = 0.6;    ///< duration of one movement there and back [s]
   double cog_height = 0;  ///< height of the COG; 0 for starting_height() [m]
 };
 WaveParameters wave_defaults(const RobotModel& model);

@@ -1,5 +1,5 @@
-// Gestures. Each part is minimum jerk with rest at both ends. The motion starts and ends with the
-// COG over the middle of the feet, or with a COG that is solved from ZMP keys.
+// Gestures. Each part is a minimum-jerk movement with rest at both ends. The motion starts and ends
+// with the COG over the middle of the feet, or with a COG that is solved from ZMP keys.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -341,8 +341,8 @@ Pattern wave_pattern(const RobotModel& model, const WaveParameters& p) {
 }
 
 double kick_cog_height(const RobotModel& model, double height) {
-  // Chosen: half of the way by which the COG rises, so that the leg that carries the robot is bent
-  // more than usual at the beginning by as much as it is bent less than usual in the kick.
+  // Chosen: half of the distance by which the COG rises, so that the leg that carries the robot is
+  // bent more than usual at the beginning by as much as it is bent less than usual in the kick.
   constexpr double kShare = 0.25;
   return to_millimetre(starting_height(model) - kShare * height);
 }

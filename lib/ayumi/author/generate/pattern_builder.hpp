@@ -12,7 +12,8 @@ double to_tenth_millimetre(double x);
 /// its range.
 void require_range(const char* pattern, const char* name, double value, double low, double high,
                    const char* unit);
-/// The same for the COG height of a robot with legs of this length [m]; 0 is the usual height.
+/// Throws Error(usage) if this COG height [m] is too small or too large for legs of the length
+/// `leg` [m]. A height of 0 stands for the usual height.
 void require_cog_height(const char* pattern, double height, double leg);
 
 /// Sum of the link lengths from hip to sole [m].

@@ -1,5 +1,5 @@
 #pragma once
-// A walk whose steps change on the way, for example one that becomes faster.
+// A walk whose steps change, for example a walk that becomes faster.
 
 #include <vector>
 

@@ -23,8 +23,8 @@ namespace {
 /// the generated walk (60 mm in 0.45 s). With half of the value, contact 3 of the imported walk
 /// begins at 1.553 s instead of 1.543 s; with twice, at 1.527 s.
 constexpr double kRestSpeed = 0.020;
-/// A rotation counts as the speed of a point at this distance [m]. Derived: half the length of
-/// HOAP-1's sole (98 mm).
+/// Lever with which a rotation is added to a displacement: it counts as the movement of a point at
+/// this distance [m]. Derived: half the length of HOAP-1's sole (98 mm).
 constexpr double kLever = 0.05;
 /// Largest difference in height of standing feet [m]. Chosen: a fifth of the lift of the generated
 /// walk (15 mm). No measured case changes between half and twice the value (constants.md).
@@ -96,10 +96,10 @@ void tell_low_swings(std::vector<int>& labels) {
   }
 }
 
-// Recorded commands of real robots compensate the compliance under load, so that the soles in them
-// never rest relative to each other at one height. At an immediate change of the supporting foot
-// both feet support as long as they do not move apart along the ground and have nearly the same
-// height.
+// Recorded commands of real robots compensate the compliance under load. In such commands, the
+// soles never rest relative to each other at the same height. At an immediate change of the
+// supporting foot both feet support as long as they do not move apart along the ground and have
+// nearly the same height.
 void add_handovers(const Soles& soles, double dt, std::vector<int>& labels) {
   const int n = static_cast<int>(labels.size());
   const int look = std::max(1, static_cast<int>(std::lround(kLook / dt)));
@@ -303,7 +303,7 @@ void end_swings(const RobotModel& model, const RawMotion& motion, const Soles& s
       const int middle = (run.first + run.last) / 2;
       int least = edge;
       while (least != middle && height(least + step) < height(least)) least += step;
-      if (least == middle) continue;  // sinks all the time: it takes up load
+      if (least == middle) continue;  // the sole sinks all the time, because it takes up load
       const double place = height(least);
       for (int k = edge; k != least && height(k) > place + kAtRest; k += step)
         supports[k] = supports[outside];

@@ -14,7 +14,7 @@ using Soles = std::array<std::vector<Eigen::Isometry3d>, 2>;  ///< sole frames b
 /// Sole frames in the world if the motion has a base, otherwise in the base.
 Soles soles_of(const RobotModel& model, const RawMotion& motion);
 
-/// Height of the lowest corner of a sole in row k; `foot` is the index of its Side.
+/// Height of the lowest corner of a sole in row k [m]; `foot` is the index of its Side.
 double lowest_point(const RobotModel& model, const Soles& soles, int foot, int k);
 
 /// The supporting feet in each row. Feet that stand do not move relative to each other. If the

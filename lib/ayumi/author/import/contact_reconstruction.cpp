@@ -99,7 +99,7 @@ class Grounding {
           "supporting soles are " + text::join(ways, " and ") +
           " (--ground moves the robot up and down, so that the supporting soles touch the ground)");
     if (slides > kSaid) result.push_back("supporting soles slide by up to " + millimetres(slides));
-    constexpr size_t kMost = 6;  // names in a line. Chosen: a person can still read the line
+    constexpr size_t kMost = 6;  // flights in a line. Chosen: a person can still read the line
     if (flight > 0)
       result.push_back("no sole rests on the ground for " + text::brief(flight, 3) + " s (" +
                        text::join_first(flights, kMost) +

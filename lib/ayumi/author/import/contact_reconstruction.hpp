@@ -42,15 +42,16 @@ struct RawMotion {
   ContactThresholds contact = {};  ///< thresholds of the detection
 };
 
-/// The supporting feet in each row. Feet on the ground do not move relative to each other: both
-/// support the robot while their relative pose rests (2 cm/s) at one height (3 mm); otherwise the
-/// foot that is lower in the frame of the other foot supports the robot. At an immediate change of
-/// the supporting foot, both support it as long as they do not move apart along the ground (4 cm/s)
-/// or by more than 1 cm in height. In a motion with a base, a sole supports the robot if it is at
-/// rest and at most 3 mm above the lowest height that any sole has. In rows without such a sole,
-/// the thresholds of the motion decide by height, speed and load; rows where they find no sole
-/// either are flight. Intervals shorter than 20 ms belong to their neighbours. A contact begins
-/// when the foot comes to rest after a swing, and it ends when the next swing of this foot begins.
+/// The supporting feet in each row. Feet on the ground do not move relative to each other. Both
+/// feet support the robot while their relative speed is below 2 cm/s and their heights differ by
+/// less than 3 mm. Otherwise, only the foot that is lower as seen from the other foot supports it.
+/// If the supporting foot changes without a phase in which both are at rest, both support the robot
+/// as long as they do not move apart along the ground (4 cm/s) or by more than 1 cm in height. In a
+/// motion with a base, a sole supports the robot if it is at rest and at most 3 mm above the lowest
+/// height that any sole has. In rows without such a sole, the thresholds of the motion decide by
+/// height, speed and load; rows where they find no sole either are flight. Intervals shorter than
+/// 20 ms belong to their neighbours. A contact begins when the foot comes to rest after a swing,
+/// and it ends when the next swing of this foot begins.
 std::vector<Support> detect_supports(const RobotModel& model, const RawMotion& motion);
 
 /// One foot on the ground.
@@ -60,9 +61,10 @@ struct FootContact {
   Foothold place;
 };
 
-/// The motion as a pattern with a table named `table`: phases, level footholds, swings, and the
-/// base that follows from them (in double support by minimum jerk from one foot to the other),
-/// unless the motion has a base. It starts with the feet at the origin and the heading along x.
+/// The motion as a pattern with a table named `table`: phases, level footholds and swings. If the
+/// motion has no base, the base follows from the footholds. In double support, it changes from one
+/// foot to the other by minimum jerk, and the motion starts with the feet at the origin and the
+/// heading along x.
 struct GroundedMotion {
   Pattern pattern;
   std::vector<FootContact> contacts;  ///< contacts in the order in which they begin
@@ -85,11 +87,12 @@ struct CutEnds {
 };
 CutEnds cut_ends(const RobotModel& model, const RawMotion& motion);
 
-/// The motion, changed so that it begins and ends at rest: where it was cut while the robot moved,
-/// it is played slowly at first and reaches its own speed (by minimum jerk) after `seconds`, or
-/// slows down in the same way at its end. Its path over the ground stays, so that no foot slides;
-/// every end takes seconds/2 longer. All other rows keep their bits. ZMP and vertical force are
-/// dropped, because they change. Throws Error(bad_pattern) when the motion is too short.
+/// The motion, changed so that it begins and ends at rest. If its beginning was cut while the robot
+/// moved, it is played slowly at first and reaches its own speed (by minimum jerk) after `seconds`
+/// [s]. If its end was cut, it slows down correspondingly. Its path over the ground stays, so that
+/// no foot slides; every end takes seconds/2 longer. All other rows keep their bits. ZMP and
+/// vertical force are dropped, because they change. Throws Error(bad_pattern) when the motion is
+/// too short.
 RawMotion with_ramps(const RobotModel& model, RawMotion motion, double seconds);
 
 }  // namespace ayumi

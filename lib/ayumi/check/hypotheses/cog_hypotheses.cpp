@@ -24,8 +24,8 @@ namespace {
 // share of the length of a leg. Chosen: more than half of a sole.
 constexpr double kNotedOffset = 0.25;
 // The COG may sink below its lowest key before a lift-off or after a landing. If it sinks by less
-// than this share of the stoop, the motion counts as what the keys show. Chosen: 3 mm for a stoop
-// of 30 mm.
+// than this share of the stoop, the motion still counts as the one that the keys describe. Chosen:
+// 3 mm for a stoop of 30 mm.
 constexpr double kNotedSink = 0.1;
 // Number of points of a segment at which its lowest value is searched. Chosen: between two points,
 // the value is lower by less than 1e-3 of the stoop.
@@ -43,21 +43,22 @@ constexpr std::array kLowerTakeOffs = {0.02, 0.04, 0.06, 0.08};
 constexpr std::array kSmallerHops = {0.8, 0.65, 0.5, 0.4, 0.3};
 constexpr std::array kSmallerHopsLower = {0.0, 0.04, 0.08, 0.12};
 // Smallest rise from the stoop to the lift-off that is tried, as a share of the length of a leg.
-// Chosen: 5 mm for a leg of 0.25 m; below, the push is a jerk.
+// Chosen: 5 mm for a leg of 0.25 m; with a smaller rise, the push would be a jerk.
 constexpr double kLeastRise = 0.02;
 // A motion begins and ends at rest, with the COG above the ZMP. If the ZMP moves less than this
-// time after the beginning or before the end, the COG has too little time for it. The time
-// constant of the COG is sqrt(z/g), which is 0.16 s for HOAP-1. Derived: what is left of a movement
-// after four time constants is 2 %.
+// time after the beginning or before the end, the COG has too little time to start from rest or to
+// come to rest. The time constant of the COG is sqrt(z/g), which is 0.16 s for HOAP-1. Derived:
+// what is left of a movement after four time constants is 2 %.
 constexpr double kShortRest = 4;
 // Times of rest that are tried, in time constants of the COG. Chosen: up to the time in which the
 // COG comes to rest, and half as much again.
 constexpr std::array kRests = {2.0, 3.0, 4.0, 6.0};
-// The planner moves ZMP keys near an end that has no rest. The motion also changes this long before
-// or after the movement of the ZMP, in time constants of the COG. Derived: e^-2 is 14 %.
+// The planner moves ZMP keys near an end that has no rest. Such a change also affects the motion
+// for this time before or after the movement of the ZMP, in time constants of the COG. Derived:
+// e^-2 is 14 %.
 constexpr double kRestReach = 2;
-// Number of steps of a second in which rests are named. Chosen: an author writes tenths of a
-// second.
+// Times of rest are named in whole multiples of a second divided by this number. Chosen: an author
+// writes tenths of a second.
 constexpr double kRestsPerSecond = 10;
 // Number of bisection steps in the search for a time. Chosen: an interval of a second becomes a
 // microsecond, and times are written in milliseconds.
@@ -129,9 +130,9 @@ void stoops(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
     const Keyframe &leaves = of.pattern.keyframes[keys[*off]],
                    &lands = of.pattern.keyframes[keys[*off + 1]];
     const double mean = (*lands.cog_height - *leaves.cog_height) / flight;
-    // For each end of the flight: the neighbouring key outside the flight, the key at this end,
-    // and the mean vertical speed of the flight, where time runs away from the first of these
-    // keys.
+    // For each end of the flight: the neighbouring key outside the flight, the key at this end, and
+    // the mean vertical speed of the flight. The sign of the speed is for a time that runs from the
+    // first of these keys into the flight.
     std::vector<std::tuple<size_t, const Keyframe*, double>> sides;
     if (*off > 0) sides.emplace_back(keys[*off - 1], &leaves, mean);
     if (*off + 2 < keys.size()) sides.emplace_back(keys[*off + 2], &lands, -mean);
@@ -382,7 +383,7 @@ void shorter_flights(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
     for (size_t i = 0; i < of.pattern.phases.size(); ++i) {
       if (of.pattern.phases[i].support != Support::none) continue;
       const double begin = of.begin_of(i), end = of.pattern.phases[i].until;
-      const double now = std::round(1e3 * share * (end - begin)) / 1e3;  // as it is written
+      const double now = std::round(1e3 * share * (end - begin)) / 1e3;  // rounded to 1 ms
       if (flights.empty()) {
         first = i;
         lasts = end - begin;

@@ -1,6 +1,7 @@
 #pragma once
-// Heights and places of the COG that the legs cannot reach, and times that are too short or too
-// long for its movement.
+// Mistakes in heights and places of the COG that the legs cannot reach, and in times that are too
+// short or too long for its movement. Each function adds to `made` the changes of the pattern that
+// it describes.
 
 #include <vector>
 
@@ -11,9 +12,9 @@ namespace ayumi::hypotheses {
 
 /// Another time between the lowest key of the COG and a lift-off or a landing.
 void stoops(const ExaminedPattern& of, std::vector<Hypothesis>& made);
-/// With the COG kept down while a foot is lifted.
+/// Keys that keep the COG down while a foot is lifted.
 void level_cog(const ExaminedPattern& of, std::vector<Hypothesis>& made);
-/// Without keys that hold the COG at a place that the feet have left.
+/// The removal of keys that hold the COG at a place that the feet have left.
 void held_cog(const ExaminedPattern& of, std::vector<Hypothesis>& made);
 /// A lower COG at both ends of flights with straight legs.
 void lower_take_offs(const ExaminedPattern& of, std::vector<Hypothesis>& made);

@@ -1,6 +1,6 @@
 #pragma once
-// What the search for likely causes knows about the pattern that it examines: what is written,
-// where the feet are planned, and which parts may cause an error.
+// The data of the pattern in which likely causes are searched: what is written, where the feet are
+// planned, and which parts may cause an error.
 
 #include <algorithm>
 #include <iterator>
@@ -78,7 +78,7 @@ std::string seconds(double t);
 bool is_single(Support support);
 /// The foot that stands in a single support.
 Side stance_of(Support support);
-/// Whether `same` holds for one of the two neighbours of `t` in a sorted list of times.
+/// Whether `same` is true for one of the two neighbours of `t` in a sorted list of times.
 template <class Same>
 bool has_beside(const std::vector<double>& times, double t, const Same& same) {
   const auto after = std::lower_bound(times.begin(), times.end(), t);

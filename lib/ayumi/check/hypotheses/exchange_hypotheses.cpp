@@ -51,7 +51,8 @@ bool swings_thrice(const ExaminedPattern& of, size_t phase) {
   return foot(phase) && before == foot(phase) && after == before;
 }
 
-// How far a foot lands on its own side of the other one [m].
+// Distance by which a foot lands on its own side of the other foot [m]; negative on the side of the
+// other foot.
 double outwards(const ExaminedPattern& of, size_t phase) {
   const Swing& swing = *of.pattern.phases[phase].swing;
   const Eigen::Isometry3d stance = of.feet->pose(other(swing.foot), of.pattern.phases[phase].until);
@@ -296,7 +297,7 @@ void unlike_sides(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
       else
         unlike.push_back({joint, partner, angle, meant});
     }
-    // Both joints of a pair are unlike.
+    // Each of the two joints of a pair counts as unlike, so one pair gives two entries.
     if (unlike.size() != 2 || alike < unlike.size()) return;
     for (const Pair& pair : unlike)
       made.push_back({Rank::exchange,

@@ -1,5 +1,6 @@
 #pragma once
-// Exchanges: left and right, x and y, or two footholds.
+// Mistakes in which two things were exchanged: left and right, x and y, or two footholds. Each
+// function adds to `made` the changes of the pattern that it describes.
 
 #include <vector>
 
@@ -22,7 +23,8 @@ void swapped_axes(const ExaminedPattern& of, std::vector<Hypothesis>& made);
 void starts(const ExaminedPattern& of, std::vector<Hypothesis>& made);
 /// The left and the right part of one keyframe, exchanged.
 void key_sides(const ExaminedPattern& of, std::vector<Hypothesis>& made);
-/// The one joint of a posture that is not the mirror image of its partner.
+/// A joint of a posture as the mirror image of its partner, if only this pair of joints is not
+/// symmetric.
 void unlike_sides(const ExaminedPattern& of, std::vector<Hypothesis>& made);
 
 }  // namespace ayumi::hypotheses

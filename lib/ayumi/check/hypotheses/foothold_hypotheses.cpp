@@ -15,9 +15,9 @@ namespace ayumi::hypotheses {
 namespace {
 
 // Number of feet above the ground or in it that are tried one by one. Chosen: a wrong height of one
-// step also raises the steps after it, and its own change mends them all.
+// step also raises the steps after it, and the correction of this step corrects them all.
 constexpr size_t kRaisedAlone = 4;
-// Below this, the turn of a foot against the other one is ignored [rad]. Chosen: ten degrees.
+// A turn of a foot relative to the other foot below this is ignored [rad]. Chosen: ten degrees.
 constexpr double kNotedTurn = 0.17;
 
 bool has_later_place(const ExaminedPattern& of, size_t phase) {

@@ -1,5 +1,6 @@
 #pragma once
-// Footholds that are too far away, that are turned too far, or that are above the ground or in it.
+// Mistakes in footholds that are too far away, that are turned too far, or that are above the
+// ground or in it. Each function adds to `made` the changes of the pattern that it describes.
 
 #include <vector>
 
@@ -8,13 +9,13 @@
 
 namespace ayumi::hypotheses {
 
-/// Turns of steps that were given for both feet.
+/// A turn of 0 for the steps of the second foot, if the turn was stated for the steps of both feet.
 void turns(const ExaminedPattern& of, std::vector<Hypothesis>& made);
-/// One foothold nearer to the other foot, with all later footholds.
+/// One foothold that is moved nearer to the other foot, together with all later footholds.
 void near_footholds(const ExaminedPattern& of, std::vector<Hypothesis>& made);
-/// One foothold with a smaller turn, with all later footholds.
+/// One foothold with a smaller turn; all later footholds turn with it.
 void lesser_turns(const ExaminedPattern& of, std::vector<Hypothesis>& made);
-/// Feet that are planned to stand above the ground or in it, at the height of the ground.
+/// The height of the ground for feet that are planned to stand above the ground or in it.
 void ground_heights(const ExaminedPattern& of, std::vector<Hypothesis>& made);
 
 }  // namespace ayumi::hypotheses

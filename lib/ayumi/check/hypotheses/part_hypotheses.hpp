@@ -1,5 +1,6 @@
 #pragma once
-// Parts of a pattern that are missing, that contradict others, or that make the motion jump.
+// Mistakes in parts of a pattern that are missing, that contradict others, or that make the motion
+// jump. Each function adds to `made` the changes of the pattern that it describes.
 
 #include <vector>
 
@@ -12,11 +13,12 @@ namespace ayumi::hypotheses {
 void swings(const ExaminedPattern& of, std::vector<Hypothesis>& made);
 /// A missing phase on both feet between two phases on one foot.
 void double_supports(const ExaminedPattern& of, std::vector<Hypothesis>& made);
-/// Without the keys of leg joints, which take the legs from the inverse kinematics.
+/// The removal of keys of leg joints. With such keys, the legs do not follow the inverse
+/// kinematics.
 void leg_keys(const ExaminedPattern& of, std::vector<Hypothesis>& made);
-/// Without keys of one quantity that follows from others.
+/// The removal of keys of one quantity that follows from others.
 void superfluous_keys(const ExaminedPattern& of, std::vector<Hypothesis>& made);
-/// With smooth interpolation in place of steps and corners.
+/// Smooth interpolation instead of steps and corners.
 void interpolations(const ExaminedPattern& of, std::vector<Hypothesis>& made);
 
 }  // namespace ayumi::hypotheses

@@ -120,7 +120,7 @@ Eigen::Vector3d standing_hip(const ExaminedPattern& of, Side side) {
 
 }  // namespace
 
-// All keys of a foot in the air are nearer to its place on the ground, or lower, or both.
+// Tries all keys of a foot in the air nearer to its place on the ground, or lower, or both.
 void smaller_swings(const ExaminedPattern& of, std::vector<Hypothesis>& made,
                     const std::array<double, 3>& shares) {
   if (!of.feet) return;

@@ -27,9 +27,9 @@ constexpr double kShortSegment = 0.15;
 // Definition: below -2, the smallest value of other changes of times, so that it comes first.
 constexpr double kCoincidence = -3;
 
-// Number of such keys after the beginning of this phase that are at the end of a phase if this
-// end and all later ones are `later`. Both lists are sorted, so one pass through them is enough:
-// a long walk has thousands of phases and keys.
+// Number of keys in ExaminedPattern::contacts after the beginning of this phase that are at the end
+// of a phase if the end of this phase and all later ends are moved by `later` [s]. Both lists are
+// sorted, so one pass through them is enough: a long walk has thousands of phases and keys.
 long keys_at_ends(const ExaminedPattern& of, size_t phase, double later) {
   long keys = 0;
   const double begin = of.begin_of(phase) + kSameInstant;
@@ -93,13 +93,13 @@ std::optional<double> usual_duration(const ExaminedPattern& of, size_t phase) {
   return like[like.size() / 2];
 }
 
-// Moves the end of a phase without such a key to a key of the ZMP or of a foot beside it, except
-// to the end at which the phase has the duration `tried`.
+// If no keyframe with is_of_contact() is at the end of a phase, tries to move this end to such a
+// keyframe nearby. The end at which the phase would have the duration `tried` is left out.
 void ends_at_keys(const ExaminedPattern& of, size_t phase, double after,
                   std::optional<double> tried, std::vector<Hypothesis>& made) {
   const double begin = of.begin_of(phase), until = of.pattern.phases[phase].until;
   if (phase + 1 == of.pattern.phases.size() || of.has_key_of_contact(until)) return;
-  // The keys of the COG height belong to the ends of a flight.
+  // At the ends of a flight, keys of the COG height are tried, too.
   const bool flight = of.pattern.phases[phase].support == Support::none ||
                       of.pattern.phases[phase + 1].support == Support::none;
   for (size_t k = 0; k < of.pattern.keyframes.size(); ++k) {

@@ -1,5 +1,6 @@
 #pragma once
-// Times of keyframes and ends of phases that were mistyped, or that do not fit each other.
+// Mistakes in times of keyframes and ends of phases that were mistyped, or that do not fit each
+// other. Each function adds to `made` the changes of the pattern that it describes.
 
 #include <vector>
 

@@ -1,6 +1,7 @@
 #pragma once
-// Units that were mistaken: degrees and radians, s and ms, m, cm and mm; and times that were all
-// stretched by one factor.
+// Mistakes in units (degrees and radians, s and ms, m, cm and mm), and in times that were all
+// stretched by one factor. Each function that has a list `made` adds to it the changes of the
+// pattern that it describes.
 
 #include <vector>
 

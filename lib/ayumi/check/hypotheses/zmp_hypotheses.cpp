@@ -29,9 +29,9 @@ bool is_under(const ExaminedPattern& of, const Keyframe& key, Support single) {
   return sole.contains((place.inverse() * zmp).head<2>());
 }
 
-/// The keys that lead the ZMP while the robot stands on one foot, but do not put it under this
-/// foot: the keys of the phase and, where the phase begins or ends between two keys, the nearest
-/// keys outside of it.
+/// The keys that determine the ZMP while the robot stands on one foot, but that do not put it under
+/// this foot. They are found among the keys within the phase, the last key at or before its
+/// beginning, and the first key at or after its end.
 std::vector<size_t> wrong_zmp_keys(const ExaminedPattern& of, size_t phase) {
   const double begin = of.begin_of(phase), until = of.pattern.phases[phase].until;
   std::vector<size_t> keys, wrong;

@@ -1,5 +1,6 @@
 #pragma once
-// Keys that put the ZMP under a foot that does not carry the robot, and missing keys of the ZMP.
+// Mistakes in keys that put the ZMP under a foot that does not carry the robot, and missing keys of
+// the ZMP. Each function adds to `made` the changes of the pattern that it describes.
 
 #include <vector>
 

@@ -10,8 +10,8 @@
 // The term with ka is the part of (14) that the reference lacks. By (14), w2 (x - refZ) is the
 // wanted acceleration, and the ground gives w2 (x - zhat). The term is zero if the ZMP is where it
 // should be. This is the short-term absorption. The term with damp damps the rocking of the robot
-// on soles and servos that yield. This rocking is excited by the term with ka, because it answers
-// late (docs/theory.md, "Late sensors").
+// on soles and servos that yield. The term with ka excites this rocking, because it responds late
+// (docs/theory.md, "Late sensors").
 #include "ayumi/control/laws/dtad.hpp"
 
 #include <algorithm>
@@ -297,7 +297,7 @@ CogReference Dtad::cog_reference(const Estimate& estimate, LawTerms& terms) {
   const ConvexPolygon& polygon =
       region_.update(*model_, command.feet, command.support, p.margin * z);
   // A planned ZMP outside the support, as in imported motions, is not an error that the law should
-  // answer.
+  // correct.
   const Vector2d planned =
       polygon.empty() ? Vector2d(command.zmp.head<2>()) : polygon.project(command.zmp.head<2>());
   const Vector2d wanted =
@@ -380,7 +380,8 @@ Vector2d Dtad::zmp_gap(const Vector2d& ref_zmp, double w, double z) {
 void Dtad::turn_upper_body(double w) {
   const Vector3d moment =
       model_->mass() * kGravity * params_.momentum_gain * Vector3d(-outside_.y(), outside_.x(), 0);
-  // While a foot swings, its leg gives way before the trunk does.
+  // While a foot swings, the hip of its leg does not stop the trunk, because the foot leaves its
+  // path instead (docs/theory.md, "Angular momentum"). So the turn is bounded on both feet only.
   const bool bounded = plan().support == Support::both;
   const bool turns = !moment.isZero(0) || !momentum_.at_rest();
   const TurnRoom room = bounded && turns ? body_.turn_room() : TurnRoom{};

@@ -41,8 +41,8 @@ struct DtadParams {
   /// [momentum] moment that trunk and arms provide, as a multiple of the moment that corresponds to
   /// a wanted ZMP outside the support; 0 switches this off.
   double momentum_gain = 6;
-  /// [step] share of the DCM error beyond the supports' reach that the footholds answer; 0 switches
-  /// this off.
+  /// [step] share of the DCM error beyond the supports' reach that the footholds correct; 0
+  /// switches this off.
   double step_share = 0;
   double time_scale_limit = 2.5;  ///< [hurry] fastest clock of a pattern with moving footholds
   bool literal = false;  ///< (14) integrated as printed, with D's sign corrected: a demonstration
@@ -74,8 +74,9 @@ inline bool has_dtad_gains(ControllerKind kind) {
 }
 
 /// The defaults, overridden first by the robot's sidecar and then by the pattern's gains. Throws
-/// Error(usage) that names an unknown gain, for K <= 1 or D <= 0, for q together with k and d, or
-/// for a value out of range.
+/// Error(usage) for an unknown gain or a value out of range, and Error(bad_model) if this gain is
+/// in the sidecar. Also throws Error(usage) for k without d, for K <= 1 or D <= 0, and for q
+/// together with k and d.
 DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec);
 
 /// The gains by their names in files; "k" and "d" are K and D omega as the law uses them.
@@ -135,7 +136,7 @@ class Dtad {
   Side anchor_ = Side::left;
   ReactionFilter filter_;                             // measured ZMP and f_z
   Eigen::Vector2d offset_ = Eigen::Vector2d::Zero();  // accepted offset of the ZMP [m]
-  // Wanted ZMP minus the ZMP that is asked for [m].
+  // // Wanted ZMP minus ref ZMP [m].
   Eigen::Vector2d outside_ = Eigen::Vector2d::Zero();
   bool first_ = true;    // no tick has been computed yet; starts from rest
   bool ended_ = false;   // the plan is at rest after its last sample

@@ -7,11 +7,11 @@
 //   w2    = reffz / (m zr)                                            (17)
 //   ddxr  = w2 (xr - Z(dcm_r)) + ka w2 (zhat - Z(dcm^)) + av w (dx^ - dxr) + ax w^2 (x^ - xr)
 //          - moment L'y / (m zr)
-// The first term is (14) of the reference pendulum, the second the short-term absorption of
-// laws/dtad.cpp, the next two keep the reference at the robot, and the last one leaves the ZMP
-// where it is while the angular momentum L of the reference changes. The velocity in the dcm^ of Z
-// has passed a low pass. kz depends on the feet that carry load. A foot lands where dcm^ will need
-// it: Z + (dcm^ - Z) E - b. The joints follow by (28)(29), control/whole_body.
+// The first term is (14) of the reference pendulum, and the second is the short-term absorption of
+// laws/dtad.cpp. The next two terms keep the reference near the robot. With the last term, the ZMP
+// stays where it is while the angular momentum L of the reference changes. The velocity in the dcm^
+// of Z has passed a low pass. kz depends on the feet that carry load. A foot lands where dcm^ will
+// need it: Z + (dcm^ - Z) E - b. The joints follow by (28)(29), control/whole_body.
 #include "ayumi/control/laws/viip.hpp"
 
 #include <algorithm>
@@ -38,8 +38,8 @@ using Eigen::Vector3d;
 namespace {
 
 // If less than this time is left to a landing, the regulator no longer aims at it [s]. Chosen: the
-// ZMP that it requires grows with 1 / (1 - E); later, only the foothold can still answer. Half or
-// twice the value changes measured cases by 5 % or more (constants.md).
+// ZMP that it requires grows with 1 / (1 - E); later, only the foothold can still correct an error.
+// Half or twice the value changes measured cases by 5 % or more (constants.md).
 constexpr double kLeastTimeToLanding = 0.06;
 
 // The weight shift ends when the DCM is within this distance of the place where the first step
@@ -91,8 +91,8 @@ constexpr double kPushFilterTime = 0.010;
 
 // Time constant of the low pass of the measured velocity of the COG, from which VIIP computes ref
 // ZMP, as a multiple of 1/omega: 6 ms on HOAP-1. Chosen: the rms of ZMP - ref ZMP in the walk of
-// HOAP-1 with noise, mean of four seeds, is 10.5 mm without the low pass and 9.2 mm with it; with
-// half of the value 9.3 mm, with twice 9.5 mm.
+// HOAP-1 with noise, as a mean of four seeds, is 10.5 mm without the low pass and 9.2 mm with it.
+// It is 9.3 mm with half of the value, and 9.5 mm with twice.
 constexpr double kVelocityFilterTime = 0.04;
 
 // A measured velocity that differs by more than this from its low pass counts at once, as a
@@ -365,7 +365,7 @@ Viip::WantedZmp Viip::regulate(const Vector2d& dcm, int state) const {
               stands};
     }
     case Stage::single_support:
-      // Shortly before the landing only the foothold can still answer.
+      // Shortly before the landing, only the foothold can still correct an error.
       if (time_to_landing() < kLeastTimeToLanding) return {zmp_[state], 0};
       return {arriving(anchor_, time_to_landing()), growth(time_to_landing())};
     case Stage::double_support: {
@@ -387,8 +387,9 @@ Viip::WantedZmp Viip::regulate(const Vector2d& dcm, int state) const {
   return {moving(), stands};
 }
 
-// The noise of the measured velocity moves ref ZMP. (14)(15) with the measured ZMP carry the
-// velocity on, so its low pass delays only what the ground does not explain. A push ends the delay.
+// The noise of the measured velocity moves ref ZMP. (14)(15) with the measured ZMP predict the
+// change of the velocity, so the low pass delays only the part of the change that the ground force
+// does not explain. After a push, the measured velocity is used without delay.
 void Viip::follow_velocity(const Estimate& e) {
   const Vector2d measured = e.dcog.head<2>();
   if (e.contact) {
@@ -396,7 +397,7 @@ void Viip::follow_velocity(const Estimate& e) {
     velocity_ += dt_ * horizontal_acceleration(w2, e.cog.head<2>(), e.zmp.head<2>());
   }
   velocity_ += low_pass_share(dt_, omega_, kVelocityFilterTime) * (measured - velocity_);
-  // The negation also replaces what is not a number.
+  // The comparison is negated so that a velocity that is not a number is replaced, too.
   if (!((measured - velocity_).norm() <= kVelocityJump * omega_ * height_)) velocity_ = measured;
 }
 
@@ -566,7 +567,7 @@ void Viip::step_state_machine(const Estimate& e) {
                                         : divergent_component(body_.cog(), body_.dcog(), omega_);
   const double single = params_.single_support / omega_, both = params_.double_support / omega_;
   if (stage_ == Stage::weight_shift) {
-    // The DCM has arrived when the ZMP that the regulator asks for is the DCM itself.
+    // The DCM has arrived when the ZMP that the regulator requires is at the DCM itself.
     const double gap = (zmp_[0] - dcm.head<2>()).norm() / params_.pole_ratio;
     if (steps_left_ == 0)
       stage_ = Stage::stand;

@@ -47,7 +47,8 @@ struct ViipParams {
 };
 
 /// The defaults, overridden first by the robot's sidecar and then by the pattern's gains. Throws
-/// Error(usage) that names an unknown gain or a value out of range; dz must obey (25).
+/// Error(usage) for an unknown gain or a value out of range, and Error(bad_model) if this gain is
+/// in the sidecar. dz must obey (25).
 ViipParams viip_params(const RobotModel& model, const ControllerSpec& spec);
 
 /// The gains by the names that files use, in alphabetical order.

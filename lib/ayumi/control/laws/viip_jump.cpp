@@ -2,10 +2,10 @@
 // z'' = f_z/m - g.
 //   stoop    f_z/m = (kz w)^2 (r - zd - z) - 2 dz kz w z' + g            (24)(25)
 //   push     f_z/m = k (r - z) + g,  k = 2 g zH / zd^2, until z = r      (26)
-//            in its last tick z' = sqrt(2 g (r + zH - z)): the planned apex whatever the tick
+//            in its last tick z' = sqrt(2 g (r + zH - z)), so the tick does not change the apex
 //   flight   ballistic; no foot is anchored and momentum gives the base velocity,
 //            V_b = M_bb^-1 ([m v; L_B] - M_bq dtheta),  L_B = L + (p_G - p_B) x m v,
-//            with L its own at release; the IMU gives the attitude, the parabola the position
+//            with L of the release; the IMU gives the attitude, the parabola the position
 //   landing  f_z/m = k (z1 - z) + g, k = z1'^2 / zd^2, until z' = 0      (27)
 //   settle   as the stoop, towards r
 // The angular momentum is zero at release. The angular momentum of a resolution (28) is affine in
@@ -51,7 +51,7 @@ constexpr double kStoopTime = 5;
 // No measured case changes between half and twice the value (constants.md).
 constexpr double kStoopReached = 0.01;
 
-// Lean of the trunk when stooped, times z_d / ref z_G [rad]. Derivation: docs/theory_flight.md,
+// Lean of the trunk in the stoop, per z_d / ref z_G [rad]. Derivation: docs/theory_flight.md,
 // "Lean". Measured with version 0.1: with 0, jumps with the release `spring` reach an apex that is
 // 8 to 10 % too low.
 constexpr double kStoopLean = 1.2;
@@ -80,9 +80,9 @@ constexpr double kTorqueFadeTime = 0.3;
 // prototype had 20 ms.
 constexpr double kRunOnTime = 0.030;
 
-// Before touchdown the legs give way to the ground, up to this share of the falling speed. They
-// reach this share within the first time, and keep it from the second time before the planned
-// touchdown until as long after it [s]. Measured on 23 jumps of HOAP-1 (z_H 20 to 50 mm, both
+// Before the touchdown, the legs retract with up to this share of the falling speed. They reach the
+// share within the first time [s]. They keep it from the second time [s] before the planned
+// touchdown until the same time after it. Measured on 23 jumps of HOAP-1 (z_H 20 to 50 mm, both
 // releases), as the largest ratio of the peak force to twice the peak force of (27): 0.71 with
 // these values, 0.81 with 0.07 s for the first time. With 0.02 s for the second time, or a share of
 // 0.95, the legs are stretched too far before the touchdown, and in the highest jumps the ratio is
@@ -626,7 +626,7 @@ void ViipJump::fly(const Estimate& e, ControlOutput& out) {
   loaded_ = load > kTouchdownShare ? loaded_ + dt_ : 0;
   const bool touched =
       elapsed_ > kTouchdownBlindTime && (loaded_ >= kTouchdownTime || load > kHardTouchdownShare);
-  if (touched) dcog_.z() = std::min(speed_before_, 0.0);  // (27) asks for the measured speed
+  if (touched) dcog_.z() = std::min(speed_before_, 0.0);  // (27) uses the measured speed
   if (touched || elapsed_ > flight_.duration + kLateTouchdown) touch_down(e);
 }
 

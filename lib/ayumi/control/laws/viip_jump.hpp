@@ -21,7 +21,7 @@ JumpFigures jump_figures(const JumpGoal& goal);
 class ViipJump {
  public:
   /// Continues from `start`. `held` has the posture that the pattern holds during the phase. The
-  /// height of its COG is ref z_G. Throws Error(bad_pattern) for a goal that is no jump.
+  /// height of its COG is ref z_G. Throws Error(bad_pattern) for a jump that is not possible.
   ViipJump(const RobotModel& model, const ActuatorLimits& limits, const ViipParams& params,
            double dt, const Handover& start, const CommandSample& held, const JumpGoal& goal);
 

@@ -38,9 +38,9 @@ struct Bodies {
 };
 constexpr int body_scratch_doubles(int links) { return 24 * links + 16; }
 
-/// Where entries (a, b) of a symmetric matrix are stored, for columns a and b of the generalised
-/// velocity: at row[a] + entry[b] if a has the higher rank, and with `both` at row[b] + entry[a] as
-/// well. For columns of the base, entry[b] = b.
+/// The place where entry (a, b) of a symmetric matrix is stored, for columns a and b of the
+/// generalised velocity. If a has the higher rank, it is row[a] + entry[b]. With `both`, the entry
+/// is also stored at row[b] + entry[a]. For columns of the base, entry[b] = b.
 struct Layout {
   const int *row, *entry, *rank;
   bool both;

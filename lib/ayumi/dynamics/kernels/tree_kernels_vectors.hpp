@@ -92,7 +92,7 @@ inline Vec<T> back(const Vec<T>& v, T c, T s) {
 constexpr double kLargestAngle = 1e5;
 template <typename T>
 inline void sine_cosine(T q, T& sine, T& cosine) {
-  // 1.5 * 2^52: the last bit of a sum with it is worth one.
+  // The number is 1.5 * 2^52. The last bit of a sum with it has the value 1.
   constexpr double kRound = 6755399441055744.0;
   const T shifted = q * 0.63661977236758134308 + kRound;
   const T k = shifted - kRound;

@@ -49,11 +49,10 @@ struct HoapFile {
   double dt() const { return 0.001 * tick_ms; }
 };
 
-/// Blanks, CR, `-0` and any text after the motors are accepted. The interval between rows that
-/// state none is that of their layout, or `interval_ms` if this is above 0. Throws Error(bad_file)
-/// "file:line: ..." if no layout of the robot has this number of columns, if a value is not a count
-/// of 16 bits (or not an angle), if an interval is not a positive whole number, and if there are no
-/// rows.
+/// Blanks, CR, `-0` and any text after the motors are accepted. If the rows state no interval, it
+/// is that of their layout, or `interval_ms` if this is above 0. Throws Error(bad_file) "file:line:
+/// ..." if no layout of the robot has this number of columns, if a value is not a count of 16 bits
+/// (or not an angle), if an interval is not a positive whole number, and if there are no rows.
 HoapFile parse_hoap(const std::string& bytes, const std::string& file, const RobotModel& model,
                     int interval_ms = 0);
 
@@ -87,9 +86,9 @@ std::string hoap_csv(const RobotModel& model, const ReferenceTrajectory& table,
 std::string hoap_csv(const RobotModel& model, const ReferenceTrajectory& table,
                      const SafetyOptions& options, const SequenceLayout& layout);
 
-/// An imported sequence as it was, with a ramp and a hold around it in the form of the sequence:
-/// the rows of `table` before row `first` stand before it, and the rows from `first` + `count` on
-/// stand after it.
+/// An imported sequence as it was, with a ramp and a hold around it in the form of the sequence.
+/// The rows of `table` before row `first` come before the sequence, and the rows from `first` +
+/// `count` on come after it.
 std::string hoap_csv_around(const RobotModel& model, const ReferenceTrajectory& table, size_t first,
                             size_t count, const SafetyOptions& options, const HoapFile& sequence,
                             const std::string& bytes);

@@ -150,9 +150,8 @@ MotionFile read_hrpsys(const MotionInput& source) {
         motion.zmp.push_back(motion.base[k].position + motion.base[k].attitude * local);
         off = std::max(off, std::abs(motion.zmp.back().z()));
       }
-      // A ZMP that is nearer to the ground than this, if it is read relative to the waist, is taken
-      // to be in the frame of the waist. Chosen: a tenth of the height of a small robot's waist
-      // [m].
+      // If the ZMP, read relative to the waist, is nearer to the ground than this, it is taken to
+      // be relative to the waist [m]. Chosen: a tenth of the height of a small robot's waist.
       constexpr double kNearGround = 0.03;
       motion.notes.push_back(
           off < kNearGround

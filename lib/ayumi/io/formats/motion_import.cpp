@@ -617,9 +617,9 @@ void take_out_lead(const RobotModel& model, ImportedMotion& imported) {
       "angles are servo targets: the velocity lead, delay + kd/kp, was subtracted");
 }
 
-// Whether the values are angles of the encoders of this robot unit. If nobody says so, they are if
-// the format is one that programs of a robot play or record, or if they are the targets of servos.
-// The reader of a table of this program has already taken the zeros of its head into account.
+// Whether the values are angles of the encoders of this robot unit. If the user does not state it,
+// they are if the programs of a robot play or record this format, or if the values are the targets
+// of servos. If a table of Ayumi states offsets in its head, its reader has already added them.
 bool of_encoders(const MotionFile& read, const ImportOptions& options, const std::string& format) {
   if (options.sent) return true;
   if (read.of_joints) return false;
@@ -693,8 +693,8 @@ void say_rough_angles(const RobotModel& model, ImportedMotion& imported) {
 
 // Noise of the root moves the whole robot, so it moves the ZMP at once.
 void say_rough_root(ImportedMotion& imported) {
-  // Acceleration of the noise above which a note is written [m/s^2]. Derived: 0.1 g
-  // moves the ZMP by 0.1 of the COG height, about half the width of a sole.
+  // Acceleration of the noise above which a note is written [m/s^2]. Derived: 0.1 g moves the ZMP
+  // by 0.1 of the COG height, about half the width of a sole.
   constexpr double kSaid = 0.1 * kGravity;
   const std::vector<BasePose>& base = imported.motion.base;
   if (base.empty()) return;

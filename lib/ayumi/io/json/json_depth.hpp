@@ -43,8 +43,8 @@ inline std::optional<size_t> nested_too_deep(const std::string& bytes) {
 }
 
 /// The value of a JSON text whose form is not certain, as Json or OrderedJson. It is a discarded
-/// value if the text is not JSON or is nested too deeply. A discarded value has no members: to ask
-/// it for a member is an exception of the library, as for a value of the wrong type.
+/// value if the text is not JSON or is nested too deeply. A discarded value has no members: reading
+/// one throws an exception of the library, as for a value of the wrong type.
 template <typename Value>
 Value shallow_json(const std::string& bytes, bool with_comments = false) {
   if (nested_too_deep(bytes)) return Value(Value::value_t::discarded);

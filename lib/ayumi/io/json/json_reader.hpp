@@ -23,8 +23,8 @@ struct JsonPlace {
   std::string file, pointer;
 };
 
-/// Places of the values of a document that was merged from several files, by pointer. A value that
-/// is not listed stands below the place of the nearest value around it.
+/// Places of the values of a document that was merged from several files, by pointer. For a value
+/// that is not listed, the innermost listed value around it counts: the value is below its place.
 using JsonPlaces = std::map<std::string, JsonPlace>;
 
 /// One value of a JSON document together with its place. It is cheap to copy, and the document must

@@ -1,8 +1,8 @@
 #pragma once
 // Writes the changes of an edited pattern into the text of its author. Comments, order, spacing,
 // parameters, expressions, repeated blocks and included files stay where their values do not
-// change, or where the change can be written as an expression: one that changes its sign becomes
-// "-(${stride})", and one whose time is scaled becomes "(${lift_off})*1.25".
+// change. They also stay where the change can be written as an expression: an expression that
+// changes its sign becomes "-(${stride})", and a time that is scaled becomes "(${lift_off})*1.25".
 
 #include <filesystem>
 #include <map>
@@ -41,10 +41,10 @@ std::optional<RewrittenPattern> rewritten(const std::string& text, const Pattern
 /// expression is kept if one with the same parameters is in its place.
 std::vector<std::string> lost_marks(const std::string& text, const std::string& kept);
 
-/// The lines, counted from 1, on which a side is named by words that an edit does not change: in a
-/// comment, in the name of the pattern, or in that of a parameter or of a posture. A side is named
-/// by "left", by "right", and by each of `sided_names`, such as the joints of one side. `text` is
-/// the text of a pattern.
+/// The lines, counted from 1, on which words that an edit does not change name a side. Such words
+/// are in comments, in the name of the pattern, and in names of parameters and postures. A side is
+/// named by "left", by "right", and by each of `sided_names`, such as the joints of one side.
+/// `text` is the text of a pattern.
 std::vector<int> lines_with_sides(const std::string& text,
                                   const std::set<std::string>& sided_names);
 

@@ -247,9 +247,9 @@ void collect(const Part& part, const std::string& setting, std::set<std::string>
   for (const Part& each : part.parts) collect(each, setting, words);
 }
 
-/// Finds the names of settings that differ between cases: the names of every axis with several
-/// values, and the names that only some entries of a list have, or that have different values in
-/// them.
+/// Finds the names of settings that differ between cases. These are the names of every axis with
+/// several values. In a list, they are also the names that only some entries have, or that have
+/// different values in different entries.
 void differing(const Part& part, const Settings& fixed, std::set<std::string>& names) {
   if (part.kind == Part::Kind::axis && part.values.size() > 1) names.insert(part.name);
   if (part.kind == Part::Kind::hypercube) names.insert(part.names.begin(), part.names.end());

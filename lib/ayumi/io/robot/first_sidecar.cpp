@@ -35,7 +35,7 @@ constexpr double kLatency = 0.002;
 
 std::string json_text(const std::string& text) { return nlohmann::json(text).dump(); }
 
-// The number of digits with which the written value equals the rounded one.
+// The value, rounded to this number of digits after the point, as text.
 std::string rounded_text(double value, int digits) {
   double unit = 1;
   for (int i = 0; i < digits; ++i) unit *= 10;

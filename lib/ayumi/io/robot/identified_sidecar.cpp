@@ -48,11 +48,11 @@ OrderedJson servo_group(const IdentifiedJoint& joint, const IdentifiedJoint& sou
   return group;
 }
 
-// The zero of the joint's encoder. Angles that were measured at the joint show it: the difference
-// between the angle and its command without load is added to the offset that was known, so that the
-// next table compensates for both. Readings of the encoder itself do not contain its zero, and a
-// constant difference from the command is an error of the servo. Nothing for these readings, and
-// for an offset that is larger than a sidecar may state.
+// The zero of the joint's encoder. Angles that were measured at the joint show it as the difference
+// between the angle and its command without load. This difference is added to the offset that was
+// known, so that the next table compensates for both. Readings of the encoder itself do not contain
+// its zero, and a constant difference from the command is an error of the servo. So there is no
+// result for these readings, and none for an offset that is larger than a sidecar may state.
 std::optional<double> new_offset(const IdentifiedJoint& joint, const ServoDescription& own,
                                  MeasuredAt measured_at) {
   const double offset = sidecar_number(own.offset + joint.offset.value);

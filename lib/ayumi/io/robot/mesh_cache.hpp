@@ -2,7 +2,7 @@
 // Answers of ayumi-mesh-reader about mesh files that it has read before, in the user's cache
 // folder. An entry belongs to the bytes of the mesh file and of its companions, and not to a path
 // or a time, so a changed file never gets the answer about the old one. The folder may be deleted
-// at any time. What is wrong with it (no room, no permission, a broken entry) is never an error:
+// at any time. A problem with it (a full disk, no permission, a broken entry) is never an error:
 // the mesh is then read as if there were no cache.
 
 #include <cstdint>
@@ -38,8 +38,8 @@ class MeshCache {
   /// A larger answer is not kept. Chosen: it would displace many others.
   static constexpr size_t kLargestAnswer = size_t{64} << 20;
 
-  /// The folder ayumi/meshes in $XDG_CACHE_HOME or, without this variable, in ~/.cache; no value if
-  /// the variable that counts is missing or is not an absolute path.
+  /// The folder ayumi/meshes in $XDG_CACHE_HOME or, without this variable, in $HOME/.cache. No
+  /// value if the path in the variable is not absolute, or if neither variable is set.
   static std::optional<std::filesystem::path> usual_folder();
 
   /// Without a folder, nothing is found and nothing is kept.

@@ -2,9 +2,9 @@
 // The messages between Ayumi and the program ayumi-mesh-reader. Both run on the same machine, so
 // that numbers have its byte order.
 //
-// The reader begins with a hello. Then the following steps are repeated: Ayumi sends a request; the
-// reader asks for companion files, each of which Ayumi answers with a file; the reader sends a mesh
-// or a refusal. The reader ends when the connection is closed.
+// The reader first sends the message `hello`. Then the following steps are repeated: Ayumi sends a
+// request; the reader asks for companion files, each of which Ayumi answers with a file; the reader
+// sends a mesh or a refusal. The reader ends when the connection is closed.
 //
 // A message is a head and `size` bytes:
 //   hello    nothing; the number `version` is in `size`

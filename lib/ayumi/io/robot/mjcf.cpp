@@ -40,7 +40,8 @@ using Model = std::unique_ptr<mjModel, void (*)(mjModel*)>;
 // turns the axes until the last rotation has a cosine of 1 - 1e-12, which is 1.4e-6 rad.
 constexpr double kPrincipalError = 1e-5;
 
-// On an error, MuJoCo ends the program unless its hook does not return. It also prints warnings.
+// The hook for errors of MuJoCo. It must not return, because MuJoCo would then end the program.
+// MuJoCo also prints warnings, which another hook prevents.
 [[noreturn]] void throw_words(const char* words) {
   fail(ErrorCode::bad_model, std::string("MuJoCo: ") + words);
 }
@@ -124,8 +125,8 @@ std::string probe() {
 
 using Files = std::map<std::string, std::string>;
 
-// The place in the file of what MuJoCo complains about. Its message ends with the line of the text
-// that it was given, in one of two forms.
+// Throws the complaint of MuJoCo with its place in the file. MuJoCo's message ends with a line
+// number of the text that it was given, in one of two forms.
 [[noreturn]] void complain(const fs::path& path, const MjcfText& text, std::string words) {
   static const std::regex place("(, |\n)?line (= )?(\\d+)(, column = -?\\d+)?");
   std::smatch match;

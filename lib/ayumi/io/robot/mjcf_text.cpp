@@ -102,7 +102,8 @@ class Cleaner {
   }
 
  private:
-  // The lines of an included file, and all in it, are those of another file.
+  // Notes the line of each element in the file. An element of an included file, with everything
+  // inside it, has no line in this file.
   void note_lines(const TiXmlElement* printed, const TiXmlElement* stated) {
     for (; printed && stated; printed = printed->NextSiblingElement()) {
       if (stated->GetUserData() != &is_included_) {

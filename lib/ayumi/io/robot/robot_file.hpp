@@ -20,7 +20,7 @@ struct RobotSearch {
 };
 
 struct LoadOptions {
-  /// Whether MeshShape::mesh of visuals is filled, too; that of collisions always is.
+  /// Whether the meshes of visuals are loaded, too; those of collisions always are.
   bool meshes = false;
   bool guess = true;       ///< whether values are inferred that the files do not state
   Progress progress = {};  ///< is called while meshes are read

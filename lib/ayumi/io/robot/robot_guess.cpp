@@ -269,9 +269,9 @@ std::vector<Foot> feet_without_shapes(const RobotModel& model, const std::vector
 }
 
 // The two lowest end bodies that are beside each other. If a foot stands on more ground than the
-// toe that it carries, the foot is taken and not the toe. There are no feet if an end body without
-// any shape is lower and has as many joints above it as these bodies: then the shapes of the feet
-// are missing, and other bodies are not feet.
+// toe that it carries, the foot is taken and not the toe. An end body without any shape may be
+// lower and have as many joints above it as these bodies. Then the shapes of the feet are missing,
+// and the function finds no feet.
 std::vector<Foot> find_feet(const RobotModel& model, const std::vector<Isometry3d>& poses) {
   std::vector<bool> leaf(model.bodies().size(), true);
   for (const Body& body : model.bodies())
@@ -433,9 +433,9 @@ void find_facing(const RobotModel& model, RobotGuess& guess) {
 // ---- soles
 
 // The attitude in which the foot comes to rest on the ground under a load at this place. It makes
-// the facet of the hull below this place level. The facet is found by a triangle around the place,
-// which takes in the lowest point below its plane until there is none; under the place, this plane
-// can only sink.
+// the facet of the hull below this place level. To find the facet, a triangle around the place is
+// changed step by step: the lowest point below its plane replaces one of its corners, until no
+// point is below the plane. Each step lowers the plane at the place.
 Eigen::Matrix3d settled(const Points& points, const Vector2d& load) {
   // Corners of the first triangle [m] and rounding of the height over a plane [m]. Definition: far
   // outside of any foot, and far below the accuracy with which a sole is measured.

@@ -38,14 +38,15 @@ struct RobotGuess {
 /// Fills soles, home posture and servos where `robot` has none, and turns a robot without a sidecar
 /// so that it faces x.
 /// - Feet: the two lowest bodies beside each other with every joint at 0, or at the limit nearest
-///   to 0. Left and right, and so the front, follow from the names, else from the longer end of the
-///   feet.
+///   to 0. The names say which foot is the left one; otherwise, the longer end of the feet is the
+///   front. Left, right and front follow from each other.
 /// - Soles: the hull of what lies within 1 mm of the ground, thinned to at most 8 corners from the
 ///   inside. Feet without shapes are taken for boxes that have their masses and inertias.
 /// - Home: bent knees, with the COG over the middle of the soles and all joints inside their
-/// limits.
+///   limits.
 /// - Servos: full effort of each joint at an error of 0.2 rad, and for legs at least 20 m g z per
-/// rad. The inferred values are added to `assumptions`.
+///   rad.
+/// The inferred values are added to `assumptions`.
 RobotGuess guess_robot(RobotDescription robot);
 
 /// Makes a joint fixed at 0, also for the order of joints that the robot's file gives.

@@ -51,7 +51,8 @@ void read_causes(const std::vector<JsonNode>& nodes, std::vector<Finding>& findi
         node->complain("a cause is the number of a finding, from 0 to " +
                        std::to_string(count - 1));
     }
-  // The walk in which a finding was met; each finding is passed only once.
+  // For each finding, the number of the walk that first came to it. A walk ends at a finding of an
+  // earlier walk, so the time is linear in their number.
   std::vector<int> met(findings.size(), -1);
   for (int i = 0; i < count; ++i)
     for (int at = i; at >= 0; at = findings[at].cause) {

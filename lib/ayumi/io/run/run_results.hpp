@@ -32,6 +32,7 @@ struct RepairNote {
 /// Whether the joint table may go to a robot.
 struct ExportNote {
   bool safe = false;
+  /// Largest step from row to row as a share of the step that one tick allows, and its joint.
   double max_step_ratio = 0;
   std::string worst_joint;
   std::vector<std::string> violations;  ///< violations in words

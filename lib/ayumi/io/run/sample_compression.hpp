@@ -2,7 +2,8 @@
 // Rows of 64-bit floats, compressed without losing a bit. The values of a column are samples of a
 // smooth quantity, so each is predicted from the ones before it by the polynomial of order n - 1
 // through the last n of them:
-//   n = 0: 0;  1: a;  2: 2a - b;  3: 3(a - b) + c;  4: 4(a + c) - 6b - d   (a the last one)
+//   n = 0: 0;  1: a;  2: 2a - b;  3: 3(a - b) + c;  4: 4(a + c) - 6b - d
+// where a is the last value, b the one before, and so on.
 // Some columns nearly follow from others in the same row: an angle from its rate, a torque from the
 // angle and its target. If the caller names these sources s, the prediction may also be
 //   a + sum of u s + v (s - s') + w (s - 2 s' + s'')

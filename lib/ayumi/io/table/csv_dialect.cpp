@@ -31,8 +31,8 @@ bool has_decimal_commas_only(std::string_view row) {
   return true;
 }
 
-// The character between the cells of the first row, which may have decimal commas. Beside other
-// commas, tabs are blanks.
+// The character between the cells of the first row, which may have decimal commas. Tabs count as
+// blanks if there are also commas that are not decimal commas.
 char separator_of(std::string_view row, const std::string& file) {
   const bool decimal = has_decimal_commas_only(row);
   for (const char candidate : {';', decimal ? '\t' : ',', ','})

@@ -14,22 +14,22 @@
 namespace ayumi {
 
 struct ImportOptions {
-  /// Bounds of rate, where it is not 0, and of smooth. Chosen: a row in more than a second shows no
-  /// motion, one in less than 0.01 ms is no tick of a servo, and a change of more than 5 degrees
-  /// makes another motion.
+  /// Bounds of rate, where it is not 0, and of smooth. Chosen: rows more than a second apart show
+  /// no motion, rows less than 0.01 ms apart are nearer to each other than the ticks of any servo,
+  /// and a change of more than 5 degrees makes another motion.
   static constexpr Bounds kRate = {1, 1e5, "1/s"}, kSmooth = {0, 5, "deg"};
 
   std::string format{};   ///< name of motion_formats(); "" if the content decides
   bool degrees = false;   ///< unit of angles if the format does not define it
   double rate = 0;        ///< rate of rows without times [1/s]
   bool commands = false;  ///< angles are servo targets, as in Ayumi's reference tables
-  /// Where the angles were measured. If nobody says so, the format decides: those that a robot
-  /// plays or records, HOAP sequences among them, and servo targets (`commands`) are angles of the
-  /// encoders, and all others are angles of the joints. The head of a table of this program states
-  /// its offsets itself.
+  /// Where the angles were measured. Without a value, the format decides: formats that a robot
+  /// plays or records (such as HOAP sequences) and servo targets (`commands`) have angles of the
+  /// encoders; all others have angles of the joints. A table that Ayumi has written states the
+  /// offsets of the encoders in its head.
   std::optional<MeasuredAt> measured_at{};
-  /// The values are sent to this robot as they are, so they are angles of its own encoders,
-  /// whatever robot the head of a table was made for.
+  /// The values are sent to this robot as they are. So they are angles of its own encoders, even if
+  /// the head of a table states the offsets of another robot.
   bool sent = false;
   /// Rows of radians have the signs of the encoders and not of the joints.
   bool encoder_signs = true;

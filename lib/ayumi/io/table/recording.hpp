@@ -34,9 +34,9 @@ void take_to_joints(const RobotModel& model, MeasuredAt measured_at, AngleTable&
 /// Whether the first row of a file is numbers, as HOAP files are.
 bool is_bare_table(const std::string& bytes);
 
-/// Whether a file holds load cells or an IMU but no angles: it has named columns of these, or bare
-/// rows with more than two columns beyond the robot's devices, and the sidecar says how to read
-/// them.
+/// Whether a file holds load cells or an IMU but no angles. Such a file has named columns of these
+/// sensors. Or it has bare rows with more than two columns beyond the robot's devices, and the
+/// sidecar says how to read them.
 bool holds_sensors(const std::string& bytes, const std::string& file, const RobotModel& model);
 
 /// Reads load cells and IMU. They are rows of readings, which the sidecar's `load_cells`,

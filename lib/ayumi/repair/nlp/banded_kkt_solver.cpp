@@ -106,7 +106,8 @@ Band place(int n, const Nonzeros& entries, std::vector<int>& place) {
   std::iota(low.begin(), low.end(), 0);
   for (int i = 0; i < n; ++i)
     if (place[i] == kRow) low[i] = n;
-  // A row takes the minimum of its unknowns, and an unknown that of other unknowns.
+  // A row gets the lowest index of its unknowns; an unknown gets the lowest index of the unknowns
+  // that it meets directly or, below, in a row.
   auto take_lower = [&](int i, int j) {
     if (place[i] != kSlack && place[j] >= 0) low[i] = std::min(low[i], j);
   };
@@ -333,7 +334,8 @@ void eliminate_rows(const Factors& f) {
       double* column = &f.at(0, g.place[j]);
       if (!once) {
         column[g.place[j]] += sum[0];
-        for (int i = j + 1; i < g.places; ++i)  // nonzeros in several parts count with both orders
+        // Each of several nonzeros at one place counts in both orders.
+        for (int i = j + 1; i < g.places; ++i)
           column[g.place[i]] += g.place[i] == g.place[j] ? 2 * sum[i - j] : sum[i - j];
         return;
       }

@@ -67,9 +67,9 @@ struct NlpOptions {
   /// Tolerance of g, unscaled.
   double constraint_tolerance = repair_policy::solver::kConstraintTolerance;
   /// Distances of bodies have kinks, where Newton's steps may alternate between two points without
-  /// end. If this is above 0, the solution ends with the status solved where several iterations in
-  /// turn keep all constraints and change the objective by less than this share of it (or of 1, if
-  /// the objective is smaller).
+  /// end. If this is above 0, the solution ends with the status solved after several iterations in
+  /// turn that keep all constraints and hardly change the objective: by less than this share of it,
+  /// or of 1 if the objective is smaller.
   double still_change = 0;
   /// Largest complementarity with which such a search ends.
   double still_complementarity = repair_policy::solver::kKinkGradient;

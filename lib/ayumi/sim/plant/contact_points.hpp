@@ -32,10 +32,10 @@ struct PointGroup {
 };
 
 /// The points of the soles (left, then right, in the order of their polygons), then the points of
-/// the collision shapes of all links that are not part of a foot: corners of boxes, centres of
-/// spheres, ends of capsules, eight corners and the rim of each end of a cylinder, and vertices of
-/// meshes (of large meshes those farthest out in 90 directions). Points of the link above a foot
-/// that the sole shields from the ground at home are left out.
+/// the collision shapes of all links that are not part of a foot. These are corners of boxes,
+/// centres of spheres, ends of capsules, eight corners and the rim of each end of a cylinder, and
+/// vertices of meshes (of large meshes, those that are farthest out in 90 directions). Points of
+/// the link above a foot that the sole shields from the ground at home are left out.
 std::vector<ContactPoint> contact_points(const RobotModel& model);
 
 /// The stiffness of a contact point of a body that is not a sole: almost rigid [N/m].

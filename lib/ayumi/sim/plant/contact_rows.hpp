@@ -28,19 +28,19 @@ class ContactRows {
   bool all_stick() const;
 
   /// Adds these contacts, as they were in the last solve, to the rows of the step's matrix as
-  /// springs that push and pull, and to the right side `x` in the order of places. The other
-  /// contacts stay open.
+  /// springs that push and pull, and to the right side `x`, whose entries have the order of
+  /// `factor` (places). The other contacts stay open.
   void add_springs(const RobotData& data, const TreeCholesky& factor, std::vector<double>& matrix,
                    Eigen::VectorXd& x);
 
   /// Takes over the impulses of the springs. `change` is the solved change of velocity in the order
-  /// of places. If a contact does not obey its law, returns false and leaves the impulses as
+  /// of `factor`. If a contact does not obey its law, returns false and leaves the impulses as
   /// before.
   bool take_springs(const RobotData& data, const TreeCholesky& factor,
                     const Eigen::VectorXd& change, ContactSolution& solution);
 
   /// Solves the contacts with the factor L of the step's matrix. `x` contains L^-T times the right
-  /// side of the free motion, in the order of places, and receives L^-T J' times the impulses.
+  /// side of the free motion, in the order of `factor`, and receives L^-T J' times the impulses.
   ContactSolution solve(const RobotData& data, const TreeCholesky& factor, Eigen::VectorXd& x);
 
   /// The impulses of the last solve in contact axes [N s].

@@ -14,9 +14,9 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Largest number of pieces of the torque's bound that a servo may follow in one solve after the
-/// first. Chosen: as many as are left; the first is right unless the rate crosses a corner of the
-/// bound within the step.
+/// Largest number of times that a servo changes to another piece of the torque's bound in one
+/// solve. Chosen: the bound has four pieces, so three are left after the first; the first is right
+/// unless the rate crosses a corner of the bound within the step.
 constexpr int kBoundChanges = 3;
 
 /// Joint rate up to which dry friction acts as a steep viscous friction [rad/s, m/s]. In this way,
@@ -73,8 +73,8 @@ JointLaws::JointLaws(const RobotModel& model, const ActuatorLimits& limits)
     joint.back_emf = servo.back_emf;
     joint.speed_command = servo.speed_command_limit;
     joint.needs_friction = servo.stribeck_rate > 0 || !(servo.load == LoadFriction{});
-    // A joint without a motor also has an end stop; the stiffness of the stop of a hinge is 20
-    // weights times 1 m/rad.
+    // A joint without a motor also has an end stop. The stop of a hinge has the stiffness
+    // kStopStiffness times the weight of the robot times 1 m/rad.
     const double weight = model.mass() * kGravity;
     const double passive = dof.prismatic ? weight / kStopSink : weight;
     joint.stop = kStopStiffness * (servo.kp > 0 ? servo.kp : passive);

@@ -47,7 +47,7 @@ class LinkContacts {
  private:
   struct Pair {
     int a = 0, b = 0;
-    /// Lower bound at the last computation [m]; negative infinity: never computed.
+    /// Lower bound at the last computation [m]; negative infinity if it was never computed.
     double clearance = 0;
     double mark = 0;   ///< value of moved_ at the last computation [m]
     size_t first = 0;  ///< index of the first line in lines_
