@@ -274,6 +274,11 @@ TEST_F(CheckRepair, HelpOfACommandIsThatOfItsOption) {
   const Output wrong = ayumi({"help", "new", "wlak"});
   EXPECT_EQ(wrong.exit_code, 2);
   EXPECT_EQ(wrong.err, "ayumi: help: ayumi new has no command 'wlak'; did you mean 'walk'?\n");
+  EXPECT_EQ(ayumi({"help", "retime"}).err,
+            "ayumi: help: ayumi has no command 'retime'; did you mean 'edit retime'?\n");
+  EXPECT_EQ(ayumi({"help", "mirror"}).err,
+            "ayumi: help: ayumi has no command 'mirror'; did you mean 'edit mirror' or 'posture "
+            "mirror'?\n");
 }
 
 // The rows of an answer on a terminal of 80 columns.
