@@ -139,15 +139,15 @@ Advice vertical_force_advice(const JudgedMotion&, const FindingWindow& window) {
 
 Advice point_mass_advice(const JudgedMotion&, const FindingWindow& window) {
   return "the point-mass model would have a ZMP error of " + in_mm(window.worst.value) +
-         " here; nothing has to change, because Ayumi computes the motion with the full model";
+         " here. Nothing has to change, because Ayumi computes the motion with the full model";
 }
 
 std::string cog_infeasibility(const Finding& f, double) {
-  return "the COG of the posture is " + in_mm(f.worst) + " from the trusted COG";
+  return "the COG of the posture is " + in_mm(f.worst) + " away from the commanded COG";
 }
 
 std::string zmp_infeasibility(const Finding& f, double) {
-  return "the ZMP of the motion is " + in_mm(f.worst) + " from the trusted ZMP";
+  return "the ZMP of the motion is " + in_mm(f.worst) + " away from the commanded ZMP";
 }
 
 }  // namespace

@@ -84,15 +84,15 @@ Advice heat_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const Violation& v = window.worst;
   const std::string unit = std::string(" ") + heat_unit(motion, v);
   return {motion.model.dofs()[v.item].name + " needs " + text::brief(v.value, 3) + unit +
-              " on average, but its motor bears only " + text::brief(v.limit, 3) + unit +
+              " on average, but its motor can give only " + text::brief(v.limit, 3) + unit +
               " without a time limit",
           "add a rest, or shorten the lever of the weight" + straighter_leg(motion.model, v.item),
           ""};
 }
 
 std::string heat_infeasibility(const Finding& f, double violation) {
-  return "the mean torque of " + f.where + " over the motor's thermal window reaches " +
-         ratio_text(violation) + " times its continuous limit";
+  return "the mean torque of " + f.where + " in the thermal window of its motor reaches " +
+         ratio_text(violation) + " times the continuous limit";
 }
 
 }  // namespace

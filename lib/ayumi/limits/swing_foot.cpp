@@ -269,7 +269,7 @@ void place_swing_rows(RowSite& site) {
 Advice landing_advice(const JudgedMotion&, const FindingWindow& window) {
   return "let the " + std::string(name_of(foot_of(window.worst))) +
          " foot come down more slowly than " + text::fixed(window.worst.limit, 2) +
-         " m/s: use a lower lift or a longer step";
+         " m/s: use a lower lift, or give the swing more time";
 }
 
 }  // namespace

@@ -108,7 +108,7 @@ bool torsion_holds(JudgedMotion& motion, const Violation& v, double pace) {
 Advice torsion_advice(const JudgedMotion&, const FindingWindow& window) {
   return {"the foot would turn on the ground",
           slow_down_text(std::sqrt(window.worst.value / window.worst.limit)) +
-              " or swing the arms against the legs",
+              ", or swing the arms against the legs",
           ""};
 }
 
@@ -132,7 +132,7 @@ const Limit& torsion_limit() {
                                .label = "largest yaw moment",
                                .unit = "% of the moment that friction resists",
                                .scale = 100,
-                               .share_name = "yaw",
+                               .share_name = "yaw moment",
                                .line = 12},
                     .place = support_place,
                     .advice = torsion_advice,
