@@ -65,8 +65,9 @@ TEST_F(CheckRepair, TheMistakeIsNamedFirst) {
   plant("far.json", R"("to": [0.09, -0.039])", R"("to": [0.9, -0.039])");
   const Output far = ayumi({"check", "far.json", "-q"});
   EXPECT_EQ(far.exit_code, 3);
-  EXPECT_NE(far.err.find("far.json: likely cause: /phases/5: the right foot's x is 0.9 m; with the "
-                         "decimal point one place further left (0.09 m), or with values up to "),
+  EXPECT_NE(far.err.find("far.json: likely cause: /phases/5: the right foot's x is 0.9 m. With the "
+                         "decimal point one place further left (0.09 m), or with a value of at "
+                         "most "),
             std::string::npos)
       << far.err;
   EXPECT_NE(far.err.find("First error: /phases/5: t = "), std::string::npos);
@@ -80,8 +81,8 @@ TEST_F(CheckRepair, TheMistakeIsNamedFirst) {
       "keyframes": [{"t": 0, "posture": "home", "zmp": "center"}, {"t": 1, "zmp": "left"},
                     {"t": 1.8, "zmp": "left"}, {"t": 2.4, "zmp": "center"}]})");
   const std::string step = ayumi({"check", "step.json", "-q"}).err;
-  EXPECT_NE(step.find("step.json: likely cause: /phases/1: the right foot's step forward is 30 m; "
-                      "with the number read in mm (0.03 m), or with values up to 0.0"),
+  EXPECT_NE(step.find("step.json: likely cause: /phases/1: the right foot's step forward is 30 m. "
+                      "With the number read in mm (0.03 m), or with a value of at most 0.0"),
             std::string::npos)
       << step;
   // A value that is written once is named once, however often the block is repeated.

@@ -81,7 +81,7 @@ Hypothesis smaller_swing(const ExaminedPattern& of, const std::vector<AirKey>& k
   const double share = std::min(away, up);
   if (keys.size() > kPlacedKeys)
     texts.push_back("and in the later keys of this swing at " + text::fixed(100 * share, 0) +
-                    " % of the " + (away == 1 ? "vertical " : (up == 1 ? "level " : "")) +
+                    " % of the " + (away == 1 ? "vertical " : (up == 1 ? "horizontal " : "")) +
                     "distance from the line between the places of the foot on the ground");
   const auto s = static_cast<size_t>(index(side));
   return {Rank::amount,
@@ -225,7 +225,7 @@ void level_feet(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
             {Rank::geometry,
              {of.key_place(place),
               std::string("the ") + name_of(side) + " foot stays level while its leg leans by " +
-                  text::join(ways, " and ") + ", so the ankle bends by the same angle",
+                  text::join(ways, " and ") + ". The ankle has to bend by the same angle",
               "with the foot turned with the leg (" + here + others + "),"},
              [leans, turn, s](Pattern& p) {
                for (const Lean& lean : leans)
