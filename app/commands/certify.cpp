@@ -401,8 +401,8 @@ void add_certify(Command& app, Context& context) {
       "Examples:\n  ayumi certify patterns/hoap1_walk.json --failure 0.01 --confidence 0.95\n"
       "  ayumi certify walk.json --study study.json -o out/cases.json --map out/matters.svg\n"
       "  ayumi certify walk.json --against-controller none --runs 299\n"
-      "Sensors always have noise, bias and latency. Run again with the same -o to continue. Exit "
-      "code 0: certified; 1: not certified.");
+      "certify always simulates noise, bias and latency of the sensors. Run the command again with "
+      "the same -o to continue. Exit code 0: certified. Exit code 1: not certified.");
   auto options = std::make_shared<CertifyCommand>();
   CertifyOptions& certify = options->certify;
   command->add_option("PATTERN", options->pattern, "Pattern file.")->required();

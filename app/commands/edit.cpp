@@ -753,10 +753,10 @@ void add_edit(Command& app, Context& context) {
   retime_command
       .add_option(
           "--margin", options.margin,
-          "With --local: distance that the ZMP keeps from the edge of the support where this is "
-          "possible [m]. A smaller value allows a faster motion. Default: an eighth of the "
-          "sole's width, or 80 % of the smallest distance in the motion that --to-limits finds "
-          "without --local, whichever is larger.")
+          "With --local: largest distance that the ZMP has to keep from the edge of the support "
+          "[m]. A smaller value allows a faster motion. By default, the ZMP keeps the larger of "
+          "two distances: an eighth of the sole's width, and 80 % of the distance at the same "
+          "place of the motion that --to-limits finds without --local.")
       ->check(number_within(LocalRetimeOptions::kMostMargin))
       ->type_name("M");
   retime_command.add_flag("--keep-pauses", options.keep_pauses,

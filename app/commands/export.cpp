@@ -837,8 +837,8 @@ void add_export(Command& app, Context& context) {
       ->excludes(interval);
   command->add_option("--layout", options->layout,
                       "Name of the column layout for --format hoap, one of \"layouts\" in the "
-                      "sidecar (default: the first layout that states an interval, because Ayumi "
-                      "writes only such layouts).");
+                      "sidecar (default: the first layout that states the interval from row to "
+                      "row; Ayumi cannot write other layouts).");
   Option* posture = command
                         ->add_option("--posture", options->safety.from,
                                      "Posture of the robot before the ramp, or 'first' for the "
@@ -859,11 +859,10 @@ void add_export(Command& app, Context& context) {
   command->add_flag("--pushed", options->pushed,
                     "Export the table of the disturbed run. The head of the table says that it "
                     "contains the reactions to disturbances.");
-  command->add_flag(
-      "--force-unsafe", options->force_unsafe,
-      "Write the table even if it is unsafe, or if `export` refuses it for a robot, for example "
-      "because the robot fell. The head and "
-      "the name of the table then say so, for example walk.UNSAFE.csv.");
+  command->add_flag("--force-unsafe", options->force_unsafe,
+                    "Write the table even if it is unsafe, or if `export` refuses to write it, for "
+                    "example because the robot fell in the run. The head and the name of the table "
+                    "then state this, for example walk.UNSAFE.csv.");
   command
       ->add_option(
           "--servo", options->servo,

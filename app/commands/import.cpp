@@ -183,12 +183,12 @@ void add_import(Command& app, Context& context) {
       "is, "
       "for reference.csv of a run and for the csv and json tables of export.");
   command
-      ->add_option(
-          "--measured-at", at,
-          "What the angles are. encoder: measured or commanded angles as the encoders count them. "
-          "Ayumi adds to them the offsets that ROBOT states. joint: joint angles (default: "
-          "encoder with --commands and for files of robots, such as HOAP sequences; otherwise "
-          "joint). For a table that Ayumi wrote, the offsets in the head of the table are used.")
+      ->add_option("--measured-at", at,
+                   "What the angles are. encoder: angles as the encoders count them, measured or "
+                   "commanded. Ayumi adds to them the offsets that ROBOT states. joint: joint "
+                   "angles. The default is encoder with --commands and for files that a robot "
+                   "plays or records, such as HOAP sequences; otherwise it is joint. For a table "
+                   "that Ayumi wrote, the offsets in the head of the table are used.")
       ->check(one_of({"encoder", "joint"}));
   command
       ->add_option("--smooth", options.how.reading.smooth,

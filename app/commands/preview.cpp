@@ -278,8 +278,9 @@ void add_picture_options(Command& command, PreviewOptions& options) {
                   "Draw this number of snapshots into one .png, in rows of --columns.")
       ->check(whole_number_within(StripOptions::kCount));
   command
-      .add_option("--exposures", options.exposures,
-                  "Number of postures that are drawn into one .png, evenly spaced in time.")
+      .add_option(
+          "--exposures", options.exposures,
+          "Draw this number of postures over each other into one .png, evenly spaced in time.")
       ->check(whole_number_within(StripOptions::kExposures));
   command
       .add_option("--columns", options.columns,
@@ -302,10 +303,10 @@ void add_picture_options(Command& command, PreviewOptions& options) {
       .add_option("--zoom", clip.camera.zoom, "Magnification: 2 draws the robot twice as large.")
       ->capture_default_str();
   command
-      .add_option(
-          "--ghost", options.ghost,
-          "Also draw a second, translucent robot. It shows the 'command', a log of the run such "
-          "as open_loop, another run, or a pattern of the same robot.")
+      .add_option("--ghost", options.ghost,
+                  "Also draw a second, translucent robot. RUN says which motion this robot shows: "
+                  "the word command (the commanded posture), the name of a log of the run such as "
+                  "open_loop, another run, or a pattern of the same robot.")
       ->type_name("RUN");
   for (const auto& [name, list, what] :
        {std::tuple{"--hide", &options.hide,

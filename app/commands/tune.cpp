@@ -139,7 +139,10 @@ void add_tune(Command& app, Context& context) {
                    "Gain at the start of the search (default: the gain of the pattern).")
       ->type_name("GAIN=VALUE")
       ->allow_extra_args(false);
-  command->add_option("--tune", t.gains, "Gains to change (default: ka,q,ks,kd,tau_z,ankle).")
+  command
+      ->add_option(
+          "--tune", t.gains,
+          "Gains to change (default: ka,q,ks,kd,tau_z,ankle). docs/theory.md explains these gains.")
       ->delimiter(',')
       ->type_name("NAMES");
   command
