@@ -659,7 +659,7 @@ TEST_F(CheckRepair, LocksInWords) {
   ASSERT_FALSE(json["obstacles"].empty());
   EXPECT_TRUE(std::any_of(json["obstacles"].begin(), json["obstacles"].end(),
                           [](const Json& o) { return o["kind"] == "support_margin"; }));
-  EXPECT_NE(std::string(json["reasons"][0]).find("this window is locked"), std::string::npos);
+  EXPECT_NE(std::string(json["reasons"][0]).find("This window is locked"), std::string::npos);
   EXPECT_EQ(folder.files(), std::vector<std::string>{"outside.json"});
 }
 

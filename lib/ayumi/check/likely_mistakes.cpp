@@ -12,6 +12,7 @@
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/json_pointer.hpp"
+#include "ayumi/base/sentence.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/consistency.hpp"
 #include "ayumi/check/hypotheses/unit_hypotheses.hpp"
@@ -72,13 +73,6 @@ constexpr double kHeld = 1;
 constexpr size_t kNamed = 2;
 
 std::string metres(double value) { return text::brief(value, 3) + " m"; }
-
-// What is wrong, and then the remedy as a sentence of its own.
-std::string two_sentences(const std::string& wrong, std::string remedy) {
-  if (!remedy.empty() && remedy[0] >= 'a' && remedy[0] <= 'z')
-    remedy[0] = static_cast<char>(remedy[0] - 'a' + 'A');
-  return wrong + ". " + remedy;
-}
 
 class Suspicions {
  public:
@@ -523,7 +517,7 @@ std::vector<Mistake> likely_mistakes(const RobotModel& model, const Pattern& pat
   std::vector<Mistake> mistakes;
   for (const Explanation& e : search.found)
     mistakes.push_back({.place = e.place,
-                        .words = two_sentences(e.written, e.instead),
+                        .words = text::two_sentences(e.written, e.instead),
                         .explains_all = e.enough,
                         .round = e.round});
   const std::vector<Mistake> impossible = impossible_values(model, pattern);
@@ -534,7 +528,7 @@ std::vector<Mistake> likely_mistakes(const RobotModel& model, const Pattern& pat
     for (const Mistake& why : impossible)
       if (const Explanation& e = search.found.front();
           why.place == e.place && why.words.starts_with(e.written + ","))
-        mistakes.front().words = two_sentences(why.words, e.instead);
+        mistakes.front().words = text::two_sentences(why.words, e.instead);
   if (search.complete) return mistakes;
   const std::string stopped =
       "the search stopped after " + std::to_string(search.trials) + " trial changes of the pattern";
@@ -558,8 +552,8 @@ Error with_mistakes(const Error& error, const Pattern& pattern,
                                   [](const Mistake& mistake) { return mistake.is_cause; });
   if (cause == mistakes.end()) {
     const std::string& more = mistakes.front().words;
-    return {error.code(), two_sentences(error.what(), more), error.place(),
-            two_sentences(error.words(), more)};
+    return {error.code(), text::two_sentences(error.what(), more), error.place(),
+            text::two_sentences(error.words(), more)};
   }
   const bool in_file = !pattern.file.empty() && error.place().file == pattern.file;
   std::string causes;

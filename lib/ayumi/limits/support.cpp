@@ -116,9 +116,9 @@ Advice support_advice(const JudgedMotion&, const FindingWindow& window) {
   const std::string whose = v.item == kMotionZmp ? "the ZMP of the motion" : "the commanded ZMP";
   if (v.value < 0)
     return {whose + " is " + in_mm(v.value) + " outside the support",
-            "reduce the displacement of the COG by this distance. If the COG accelerates too much, "
-            "give the step more time",
-            kOrRepair};
+            // If a slower motion does not help, the remedy must not name more time.
+            "reduce the displacement of the COG by this distance",
+            std::string(", or give the step more time") + kOrRepair};
   return {whose + " is only " + in_mm(v.value) + " inside the support, but the wanted margin is " +
               in_mm(v.limit),
           "reduce the displacement of the COG by the difference", kOrRepair};
