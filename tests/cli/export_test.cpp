@@ -131,7 +131,7 @@ TEST_F(Export, TablesAreAtTheServoPeriodOfTheRobot) {
 // refuses.
 TEST_F(Export, ARunIsWholeWithoutATableThatItsFormatCannotHold) {
   for (const auto& [given, reason] :
-       {std::pair("0.0125", "a HOAP sequence needs a whole "),
+       {std::pair("0.0125", "in a HOAP sequence, the time between two rows is a whole "),
         std::pair("0.004", "the table has a row every 4 ms, but the layout 'HOAP-1' of ")}) {
     const Folder folder;
     fs::copy(AYUMI_SOURCE_DIR "/robots/hoap1", folder.path() / "odd", fs::copy_options::recursive);
