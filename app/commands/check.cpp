@@ -94,7 +94,7 @@ std::vector<AnswerPart> need_parts(const ActuatorNeed& need, const std::string& 
 std::vector<AnswerPart> refusal_parts(const Task& input, const Judgement& judgement) {
   std::vector<std::string> reasons = export_refusals(input, judgement);
   std::erase(reasons, judgement.reason());
-  return remark_parts("`export` refuses the table: ", reasons);
+  return remark_parts("`export` would refuse the table of this pattern: ", reasons);
 }
 
 // ---- the joints of a motion against their limits

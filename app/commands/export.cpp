@@ -234,7 +234,7 @@ void require_table_of_log(const ReferenceTrajectory& table, const ReferenceTraje
                       (a.cog - b.cog).norm() <= kRounding && (a.zmp - b.zmp).norm() <= kRounding &&
                       std::abs(a.fz - b.fz) <= kRounding && a.contact == b.contact;
     if (!same)
-      refuse("row " + std::to_string(k + 1) + " of the table is not that of the log of the run");
+      refuse("row " + std::to_string(k + 1) + " of the table differs from the log of the run");
   }
 }
 
@@ -500,13 +500,14 @@ bool holds_zeros(const ExportOptions& options, const ReferenceTrajectory& table)
 std::string words_on_zeros(const ExportOptions& options, const ReferenceTrajectory& table) {
   if (table.servo.zeros.isZero(0)) return "";
   if (!plays(options))
-    return "  joint angles; the offsets of this robot's encoders are not subtracted, because no "
-           "robot plays this format\n";
+    return "  the table contains joint angles. The offsets of this robot's encoders are not "
+           "subtracted, because no robot plays this format\n";
   std::vector<std::string> joints;
   for (size_t j = 0; j < table.joints.size(); ++j)
     if (const double zero = table.servo.zeros[static_cast<Eigen::Index>(j)]; zero != 0)
       joints.push_back(table.joints[j] + " " + text::fixed(zero * 180 / EIGEN_PI, 3));
-  return "  for this robot alone: the offsets of its encoders are subtracted (" +
+  return "  the table is for this robot alone, because the offsets of its encoders are subtracted "
+         "(" +
          text::join(joints, ", ") + " deg)\n";
 }
 
@@ -538,19 +539,18 @@ std::string in_words(const ExportOptions& options, const Source& source, const S
   if (!servo.content.empty()) text += "  " + words_of(servo) + "\n";
   text += words_on_zeros(options, safe.table);
   text += "  ramp " + text::brief(report.ramp) + " s, hold " + text::brief(report.hold) +
-          " s; the pattern begins at " + text::brief(report.ramp) + " s of the table";
+          " s. The pattern begins at " + text::brief(report.ramp) + " s of the table\n";
   if (!report.worst_joint.empty())
-    text += "; the largest step from row to row is that of " + report.worst_joint + " at " +
-            on_both_clocks(report.worst_at, report.ramp, report.ramp + report.motion) + ", " +
-            text::fixed(100 * report.max_step_ratio, 1) + " % of the limit";
+    text += "  the largest step from row to row is that of " + report.worst_joint + " at " +
+            on_both_clocks(report.worst_at, report.ramp, report.ramp + report.motion) + ": " +
+            text::fixed(100 * report.max_step_ratio, 1) + " % of the limit\n";
   const ShownUnit margin = shown_unit("rad", angles_in_degrees(source));
   if (!report.margin_joint.empty())
-    text += (report.min_limit_margin < 0 ? "; the joint farthest beyond its position limit is "
-                                         : "; the joint nearest to its position limit is ") +
+    text += (report.min_limit_margin < 0 ? "  the joint farthest beyond its position limit is "
+                                         : "  the joint nearest to its position limit is ") +
             report.margin_joint + ", " +
             text::brief(std::abs(report.min_limit_margin) * margin.scale, 3) + " " + margin.name +
-            (report.min_limit_margin < 0 ? " beyond this limit" : " from this limit");
-  text += "\n";
+            (report.min_limit_margin < 0 ? " beyond this limit\n" : " from this limit\n");
   for (const SafetyViolation& violation : report.violations)
     text += "  unsafe: " + text_of(violation, angles_in_degrees(source)) + "\n";
   if (!options.force_unsafe && plays(options) && (!source.unfit.empty() || !report.safe))
@@ -568,11 +568,11 @@ std::string words_on_sequence(const Source& source, const SafeTable& safe) {
   const HoapFile& file = source.kept->file;
   std::string text = "  the rows of the motion are the unchanged rows of the imported sequence";
   if (safe.report.ramp == 0 && safe.report.hold == 0)
-    text += "; --ramp S and --hold S add rows around them";
+    text += ". --ramp S adds rows before them, and --hold S adds rows after them";
   text += "\n";
   if (file.general_commands > 0)
-    text += "  commands to single devices in these rows: " + std::to_string(file.general_commands) +
-            ". The robot will carry out these commands\n";
+    text += "  these rows contain " + text::counted(file.general_commands, "command") +
+            " to single devices. The robot will carry out these commands\n";
   const std::vector<SequenceLayout> layouts = sequence_layouts(source.model);
   if (file.layout.name != layouts.front().name)
     text += "  the columns of these rows follow the layout " + file.layout.name + "; --layout " +

@@ -206,11 +206,11 @@ std::string missing_words(const std::vector<Json>& entries, const char* noun,
       return is_missing(entry) && &stage_of(entry) == &stage;
     });
     all += static_cast<size_t>(count);
-    if (count > 0) kinds.push_back(std::to_string(count) + ": " + stage.words);
+    if (count > 0) kinds.push_back(std::to_string(count) + " because " + stage.words);
   }
   std::string text = "  " + text::counted(entries.size(), noun) + ": ";
   text += std::to_string(entries.size() - all) + " made, " + std::to_string(all) + " missing" +
-          (all > 0 ? " (" + text::join(kinds, "; ") + ")" : "") + "\n";
+          (all > 0 ? " (" + text::join(kinds, ", ") + ")" : "") + "\n";
   size_t shown = 0;
   for (const Json& entry : entries) {
     if (!is_missing(entry) || entry.at("stage") == "neighbour") continue;

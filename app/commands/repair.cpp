@@ -125,12 +125,13 @@ std::string start_words(const Pattern& pattern, const GeneratedMotion& made) {
   std::string out = "  the motion was made from postures with the planned feet and ";
   out += made.least_sway ? "a COG that sways as little as the supports allow"
          : made.cog == PlannedCog::zmp
-             ? "a COG that follows the ZMP; of its keys, only the first and the last are used"
+             ? "a COG that follows the ZMP. Only the first and the last key of the COG are used"
              : "the planned COG";
   if (made.lowered > 0)
-    out += "; the COG is " + text::fixed(1e3 * made.lowered, 1) + " mm lower than " +
-           (pattern.cog_height > 0 ? "cog_height of the defaults" : "by default");
-  if (made.repair.iterations == 0) out += "; nothing had to be corrected";
+    out += ". The COG is " + text::fixed(1e3 * made.lowered, 1) + " mm lower than " +
+           (pattern.cog_height > 0 ? "\"cog_height\" of the \"defaults\" in the pattern"
+                                   : "the default COG height");
+  if (made.repair.iterations == 0) out += ". Nothing had to be corrected";
   out += "\n";
   const size_t named = std::min(made.missed.size(), kMissedListed);
   std::vector<std::string> places;
@@ -138,7 +139,8 @@ std::string start_words(const Pattern& pattern, const GeneratedMotion& made) {
     places.push_back(text::fixed(1e3 * made.missed[i].off, 1) + " mm at " +
                      text::fixed(made.missed[i].t, 3) + " s");
   if (places.empty()) return out;
-  out += "  the COG is not where the pattern puts it: it is off by " + text::join(places, ", ");
+  out +=
+      "  the COG is not at its place in the pattern: the distance is " + text::join(places, ", ");
   if (made.missed.size() > named)
     out += " and at " + text::counted(static_cast<long>(made.missed.size() - named), "more key");
   return out + ". No motion through these places was found\n";
@@ -205,9 +207,9 @@ std::string in_words(const PassingPace& pace) {
         "up to " +
         text::brief(pace.tried) + " times more slowly\n";
   if (pace.whole > 0)
-    out += "  the pattern passes the check without a repair if it lasts " +
-           text::exact(pace.whole) + " times as long in all (edit retime --scale " +
-           text::exact(pace.whole) + ")\n";
+    out += "  the pattern passes the check without a repair if the whole motion lasts " +
+           text::exact(pace.whole) + " times as long (`ayumi edit retime --scale " +
+           text::exact(pace.whole) + "`)\n";
   return out;
 }
 

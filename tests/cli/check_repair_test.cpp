@@ -323,15 +323,15 @@ TEST_F(ChecksOn80Columns, WhatIsShortenedIsPrintedWithAll) {
       std::regex_search(brief, std::regex("  shortened; `ayumi check --all` prints everything, "
                                           "with \\d+ findings\n$")))
       << brief;
-  EXPECT_EQ(brief.find("sampled from"), std::string::npos) << brief;
+  EXPECT_EQ(brief.find("where each track comes from"), std::string::npos) << brief;
   const std::string all = ayumi({"check", "jump.json", "-q", "--all"}).out;
   EXPECT_EQ(all.find("shortened"), std::string::npos) << all;
-  EXPECT_NE(all.find("sampled from"), std::string::npos) << all;
+  EXPECT_NE(all.find("where each track comes from"), std::string::npos) << all;
   EXPECT_NE(all.find("make the motion of r_knee smoother"), std::string::npos) << all;
   // A line that is not for a terminal is not broken into several.
   ::unsetenv("COLUMNS");
   EXPECT_NE(ayumi({"check", "jump.json", "-q"})
-                .out.find(" mm in ZMP and 0.00 N in f_z; that of the point mass"),
+                .out.find(" mm in ZMP and 0.00 N in f_z. The point mass differs"),
             std::string::npos);
 }
 
@@ -421,8 +421,9 @@ TEST_F(CheckRepair, ATerminalHasColoursUnlessTheyAreRefused) {
 
 TEST_F(CheckRepair, CheckSaysWhereEachTrackComesFrom) {
   const std::string people = ayumi({"check", kWalk, "-q"}).out;
-  EXPECT_NE(people.find("  sampled from\n    joints      legs by inverse kinematics"),
-            std::string::npos)
+  EXPECT_NE(
+      people.find("  where each track comes from\n    joints      legs by inverse kinematics"),
+      std::string::npos)
       << people;
   for (const char* track :
        {"    base        solved from feet, torso and COG",
@@ -442,7 +443,8 @@ TEST_F(CheckRepair, ReasonsOfExportAreListed) {
   const Json json = json_of(checked.out);
   ASSERT_EQ(json.at("export_refuses").size(), 1u) << json.dump();
   const std::string reason = json.at("export_refuses")[0];
-  EXPECT_NE(ayumi({"check", goals}).out.find("`export` refuses the table: " + reason),
+  EXPECT_NE(ayumi({"check", goals})
+                .out.find("`export` would refuse the table of this pattern: " + reason),
             std::string::npos);
   const Output refused = ayumi({"export", goals, "--format", "hoap", "-o", "t.csv"});
   EXPECT_EQ(refused.exit_code, 3);

@@ -316,10 +316,10 @@ TEST_F(LogExport, TablesOfAnotherLogAreRefused) {
   };
   expect_refused_run(
       "bent knee", [](RunFolder& run) { run.reference->rows[100].theta[10] += 0.5; },
-      "forged/reference.csv: row 101 of the table is not that of the log of the run");
+      "forged/reference.csv: row 101 of the table differs from the log of the run");
   expect_refused_run(
       "other ZMP", [](RunFolder& run) { run.reference->rows[0].zmp.x() += 0.001; },
-      "forged/reference.csv: row 1 of the table is not that of the log of the run");
+      "forged/reference.csv: row 1 of the table differs from the log of the run");
   expect_refused_run(
       "fewer rows", [](RunFolder& run) { run.reference->rows.pop_back(); }, " rows, but the log");
   expect_refused_run(

@@ -240,7 +240,8 @@ TEST_F(Run, ExplainSaysWhereTheTracksOfTheRunComeFrom) {
   ASSERT_NO_FATAL_FAILURE(given_run("calm.json"));
   const Output people = ayumi({"explain", "18", "out@0.5"});
   ASSERT_EQ(people.exit_code, 0) << people.err;
-  EXPECT_NE(people.out.find("  sampled from\n    joints "), std::string::npos) << people.out;
+  EXPECT_NE(people.out.find("  where each track comes from\n    joints "), std::string::npos)
+      << people.out;
   const Json json = json_of(ayumi({"explain", "18", "out@0.5", "--json"}).out);
   for (const char* track : {"joints", "base", "cog", "zmp"})
     EXPECT_TRUE(json.at("sampled_from").contains(track)) << track;
