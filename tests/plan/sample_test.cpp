@@ -396,7 +396,7 @@ TEST(Sample, LegsOfFiveJointsKeepTheZmp) {
   }
   const CommandSeries series = sample(model, pattern, {.dt = 0.01});
   const std::string& legs = series.origin.at("legs");
-  EXPECT_TRUE(legs.starts_with("a leg has only 5 joints, so at some places the leg cannot"))
+  EXPECT_TRUE(legs.starts_with("a leg has only 5 joints, so it cannot keep the sole level"))
       << legs;
   EXPECT_LT(worst_zmp_error(model, series), 0.0005);
   EXPECT_NEAR(series.samples[100].zmp.y() - data.cog.y(), 0.004, 0.0005);
