@@ -157,7 +157,7 @@ TEST_F(CheckRepair, APayloadOfTheScenarioIsPartOfTheVerdict) {
   EXPECT_EQ(load.exit_code, 1);
   const std::regex cause(
       "likely cause: /scenario/0: the payload on r_forearm is 3 kg, which is too heavy for "
-      "this motion; the robot can carry up to ([0-9.]+) kg there");
+      "this motion. The robot can carry up to ([0-9.]+) kg there");
   std::smatch words;
   ASSERT_TRUE(std::regex_search(load.out, words, cause)) << load.out;
   EXPECT_NE(load.out.find(" with 3 kg on r_forearm"), std::string::npos) << load.out;
