@@ -106,7 +106,7 @@ Pattern jump_pattern(const RobotModel& model, const JumpParameters& p) {
   if (push <= 0)
     fail(ErrorCode::usage, "jump: a stoop of " + text::brief(p.stoop) +
                                " m allows no push-off to a height of " + text::brief(p.height) +
-                               " m; choose another stoop or another height");
+                               " m. Choose another stoop or another height");
   const double bounce = to_millisecond(bounce_time(p.stoop, speed));
   const double low = to_tenth_millimetre(ref - p.stoop);
 
