@@ -416,7 +416,7 @@ TEST_F(Export, AKeptSequenceThatWasChangedIsRefused) {
   write(folder.path() / "i.sequence.csv", sequence("1", ",R,R,R", "\n", 59));
   const Output output = ayumi({"i.json", "--format", "hoap", "-o", "b.csv"});
   EXPECT_EQ(output.exit_code, 3);
-  EXPECT_NE(output.err.find("no longer the sequence that was imported"), std::string::npos)
+  EXPECT_NE(output.err.find("this file has changed since the import"), std::string::npos)
       << output.err;
   EXPECT_FALSE(fs::exists(folder.path() / "b.csv"));
 }
