@@ -243,7 +243,7 @@ class Suspicions {
         found.push_back(
             {phase_place(i),
              std::string("the swing lasts ") + text::brief(lasts) +
-                 " s. Times are in seconds; if these times are in ms, divide them by 1000"});
+                 " s. Times are in seconds. If these times are in ms, divide them by 1000"});
     }
     const std::vector<Phase>& phases = feet_->phases();
     const bool swings = std::any_of(phases.begin(), phases.end(),
@@ -251,7 +251,7 @@ class Suspicions {
     if (!swings && feet_->duration() > kLongestStand)
       found.push_back(
           {"", "the motion lasts " + text::brief(feet_->duration()) +
-                   " s. Times are in seconds; if these times are in ms, divide them by 1000"});
+                   " s. Times are in seconds. If these times are in ms, divide them by 1000"});
     say(found);
   }
 

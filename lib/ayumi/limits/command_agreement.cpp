@@ -189,7 +189,7 @@ const Limit& command_agreement_limit() {
             .unit = "m g",
             .tolerance = kForceTolerance,
             .meaning = "difference between the vertical force that the motion needs and the "
-                       "commanded vertical force; the tolerance is a share of the weight",
+                       "commanded vertical force. The tolerance is a share of the weight",
             .figure = {.key = "max_fz_residual_N",
                        .label = "largest vertical force residual",
                        .unit = "N",
@@ -204,8 +204,8 @@ const Limit& command_agreement_limit() {
             .tolerance = kPointMassTolerance,
             .meaning =
                 "distance between the ZMP of the point-mass model (14)(15) and the commanded ZMP. "
-                "This distance shows how well the point-mass model describes the motion; it is "
-                "never an error",
+                "This distance shows how well the point-mass model describes the motion. The "
+                "finding is never an error",
             .figure = {.key = "max_point_mass_gap_m",
                        .label = "largest ZMP error of the point-mass model",
                        .unit = "mm",

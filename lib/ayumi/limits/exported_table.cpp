@@ -251,7 +251,7 @@ const Limit& exported_table_limit() {
             .tolerance = kExport.step_share,
             .meaning =
                 "step of the servo target from row to row of the table, divided by "
-                "the step that `export` accepts; a tolerance above the default has no effect",
+                "the step that `export` accepts. A tolerance above the default has no effect",
             .figure = {.key = "max_table_step_ratio",
                        .label = "largest step of the exported table",
                        .unit = "% of the step that `export` accepts",
@@ -268,7 +268,7 @@ const Limit& exported_table_limit() {
             .unit = "rad",
             .tolerance = kExport.beyond_range,
             .meaning = "servo target beyond the range of the joint, which `export` "
-                       "refuses; a tolerance above the default has no effect",
+                       "refuses. A tolerance above the default has no effect",
             .repair = {.is_of_one_joint = true},
             .finding_unit = table_unit,
             .place = joint_place,
@@ -279,7 +279,7 @@ const Limit& exported_table_limit() {
             .unit = "rad/s",
             .tolerance = kExport.rest_speed,
             .meaning = "speed of the servo target at the ends of the table, which has to "
-                       "begin and end at rest; a tolerance above the default has no effect",
+                       "begin and end at rest. A tolerance above the default has no effect",
             .repair = {.is_of_one_joint = true},
             .finding_unit = rest_unit,
             .place = joint_place,

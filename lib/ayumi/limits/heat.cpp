@@ -104,7 +104,7 @@ const Limit& heat_limit() {
                     .unit = "1",
                     .tolerance = kWholeContinuousTorque,
                     .meaning = "root mean square of the motor torque in the thermal window of the "
-                               "motor, as a share of the continuous limit; the finding is only a "
+                               "motor, as a share of the continuous limit. The finding is only a "
                                "warning if the motion is shorter than the window",
                     .figure = {.key = "max_continuous_torque_ratio",
                                .label = "largest continuous torque",

@@ -70,7 +70,7 @@ const Limit& normal_force_limit() {
                     .tolerance = kLeastNormalShare,
                     .meaning = "normal ground force in contact: an error when the ground would "
                                "have to pull, a warning when the force is below the "
-                               "tolerance; the tolerance is a share of the weight",
+                               "tolerance. The tolerance is a share of the weight",
                     .finding_unit = normal_force_unit,
                     .place = support_place,
                     .advice = normal_force_advice,

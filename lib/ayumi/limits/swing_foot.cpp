@@ -285,7 +285,7 @@ const Limit& swing_foot_limit() {
                     .limit_class = LimitClass::rate,
                     .unit = "m/s",
                     .tolerance = kLandingTolerance,
-                    .meaning = "speed of a sole towards the ground when the sole lands; the "
+                    .meaning = "speed of a sole towards the ground when the sole lands. The "
                                "finding is only a warning",
                     .figure = {.key = "max_landing_speed_m_s",
                                .label = "largest speed of a landing sole",

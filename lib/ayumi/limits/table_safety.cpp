@@ -468,7 +468,7 @@ SafeTable make_safe(const RobotModel& model, ReferenceTrajectory reference,
          "the joint table begins so far from posture '" + options.from +
              "' that the ramp to its first row would take " + text::brief(plan.duration) +
              " s. At most " + text::brief(kLongestRamp) +
-             " s are allowed. Correct the angles of the first row; perhaps their unit is wrong");
+             " s are allowed. Correct the angles of the first row. Perhaps their unit is wrong");
   SafeTable result;
   result.first = plan.ramp;
   result.report = report_on(model, targets, plan, options);

@@ -187,7 +187,7 @@ void LinkPlan::add_target(const std::string& name, bool gaze, const std::vector<
       std::vector<std::string> known = {"left", "right"};
       for (const Link& each : model.links()) known.push_back(each.name);
       complain("the robot '" + model.name() + "' has no link '" + name +
-                   "'; give left, right or the name of a link" + text::suggestion(name, known),
+                   "'. Give left, right or the name of a link" + text::suggestion(name, known),
                true);
     }
     target.name = "link " + name;

@@ -180,8 +180,8 @@ Pattern alternated(const RobotModel& model, const Pattern& pattern, int times, b
                   [](const Keyframe& key) { return key.feet[0] || key.feet[1]; });
   if (foot_keys)
     fail(ErrorCode::bad_pattern, in_file(pattern, "/keyframes"),
-         "the feet have keys, but only swings can be repeated. Give swings in the phases; they can "
-         "be steps relative to the other foot");
+         "the feet have keys, but only swings can be repeated. Give swings in the phases. A swing "
+         "can be a step relative to the other foot");
   const FootPlan plan(model, pattern);
   const auto first_swing = std::find_if(plan.phases().begin(), plan.phases().end(),
                                         [](const Phase& phase) { return phase.swing.has_value(); });

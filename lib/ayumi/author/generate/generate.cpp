@@ -332,7 +332,7 @@ Pattern walk_in_parts(const RobotModel& model, const std::vector<WalkParameters>
 Pattern stand_pattern(const RobotModel& model, double duration, double cog_height) {
   if (!(duration >= 0.01 && duration <= 3600))
     fail(ErrorCode::usage, "stand: duration " + text::exact(duration) +
-                               " s is out of range; give a value from 0.01 to 3600 s");
+                               " s is out of range. Give a value from 0.01 to 3600 s");
   Pattern pattern;
   pattern.name = "stand for " + text::brief(duration) + " s";
   pattern.robot = model.name();

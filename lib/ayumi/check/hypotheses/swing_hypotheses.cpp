@@ -220,7 +220,8 @@ void level_feet(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
           else if (!by.isZero() && ++more <= kTurnedKeys)
             others += "; in " + of.key_place(lean.key) + ", " + turned;
         }
-        if (more > kTurnedKeys) others += "; in its later keys, by the lean of the leg there";
+        if (more > kTurnedKeys)
+          others += "; in the later keys of this foot, turned by the lean of the leg";
         made.push_back(
             {Rank::geometry,
              {of.key_place(place),
