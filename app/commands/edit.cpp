@@ -653,7 +653,7 @@ void add_edit_options(Command& command, EditCommand& options) {
   command.add_option("-o,--out", options.out, "Pattern file to write.")->required()->type_name("F");
   command
       .add_option("--tolerance", options.tolerances,
-                  "Tolerance of one kind of finding; see ayumi check --tolerances.")
+                  "Tolerance of one kind of finding. `ayumi check --tolerances` lists the kinds.")
       ->type_name("KIND=VALUE")
       ->allow_extra_args(false);
   add_pattern_options(command, options.input);
@@ -754,12 +754,11 @@ void add_edit(Command& app, Context& context) {
       "--local", options.local,
       "With --to-limits: slow the motion down only at the times at which a limit requires this.");
   retime_command
-      .add_option(
-          "--margin", options.margin,
-          "With --local: largest distance that the ZMP has to keep from the edge of the support "
-          "[m]. A smaller value allows a faster motion. By default, the ZMP keeps the larger of "
-          "two distances: an eighth of the sole's width, and 80 % of the distance at the same "
-          "place of the motion that --to-limits finds without --local.")
+      .add_option("--margin", options.margin,
+                  "With --local: distance from the edge of the support that is enough for the ZMP "
+                  "[m]. A smaller value allows a faster motion. Without this option, the ZMP keeps "
+                  "the larger of two distances: an eighth of the sole's width, and 80 % of the "
+                  "distance in the motion that --to-limits finds without --local.")
       ->check(number_within(LocalRetimeOptions::kMostMargin))
       ->type_name("M");
   retime_command.add_flag("--keep-pauses", options.keep_pauses,
@@ -773,8 +772,8 @@ void add_edit(Command& app, Context& context) {
       ->capture_default_str();
   loop_command
       .add_option("--over", options.over,
-                  "Duration of a transition from the end to the beginning [s]. It is added only if "
-                  "the motion does not end in the posture in which it begins.")
+                  "Duration of a transition from the end to the beginning [s]. The transition is "
+                  "added only if the motion does not end in the posture in which it begins.")
       ->check(number_within(0.02, 60.0))
       ->type_name("S");
   loop_command.add_flag("--cycle", options.cycle,

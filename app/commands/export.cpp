@@ -820,8 +820,8 @@ void add_export(Command& app, Context& context) {
       ->check(number_within(SafetyOptions::kRest));
   command
       ->add_option("--hold", options->hold,
-                   "Time for which the last posture is held [s] (default: 0.5; 0 for an imported "
-                   "sequence whose motion is unchanged).")
+                   "Time for which the last posture is held [s] (default: 0.5, or 0 if the pattern "
+                   "is an imported sequence whose motion is unchanged).")
       ->check(number_within(SafetyOptions::kRest));
   Option* interval =
       command
@@ -839,20 +839,20 @@ void add_export(Command& app, Context& context) {
                       "Name of the column layout for --format hoap, one of \"layouts\" in the "
                       "sidecar (default: the first layout that states the interval from row to "
                       "row; Ayumi cannot write other layouts).");
-  Option* posture = command
-                        ->add_option("--posture", options->safety.from,
-                                     "Posture of the robot before the ramp, or 'first' for the "
-                                     "first posture of the motion. With --sign-test, the "
-                                     "posture in which each test begins (default: all joints at "
-                                     "0).")
-                        ->type_name("NAME")
-                        ->capture_default_str();
+  Option* posture =
+      command
+          ->add_option("--posture", options->safety.from,
+                       "Posture of the robot before the ramp. The name 'first' selects the first "
+                       "posture of the motion. With --sign-test: posture in which each test begins "
+                       "(default: all joints at 0).")
+          ->type_name("NAME")
+          ->capture_default_str();
   command->add_option("--profile", options->safety.profile,
                       "Actuator profile by which the table is judged (default: for hoap the first "
                       "profile of the robot, otherwise the profile of the pattern or run).");
   command->add_option("--log", options->log, "Log of the run, for example open_loop.");
   command->add_option("--robot", options->robot,
-                      "Robot to use in place of the one that the run names.");
+                      "Robot to use in place of the robot that the run names.");
   command->add_option("--set", options->set, "Set a parameter that the pattern declares.")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
@@ -866,9 +866,9 @@ void add_export(Command& app, Context& context) {
   command
       ->add_option(
           "--servo", options->servo,
-          "Content of the targets: ideal (the joint angles), lead (the targets are ahead of "
-          "the posture by the lag of the profile's servos), or lead+sag (like lead, and "
-          "the targets also compensate for the sag under load). The default is lead for csv, json, "
+          "Content of the targets. ideal: the joint angles. lead: the targets are ahead of the "
+          "posture by the lag of the profile's servos. lead+sag: as lead, and the targets also "
+          "compensate for the sag of the joints under load. The default is lead for csv, json, "
           "hoap and gltf, and ideal for the formats of other programs.")
       ->check(one_of({"ideal", "lead", "lead+sag"}));
   command->footer(

@@ -744,12 +744,12 @@ void add_scaled(Command& command, const char* name, std::optional<double>& value
       ->type_name(type);
 }
 
-void add_height(Command& command, double& height, const std::string& lower = "") {
-  command
-      .add_option("--cog-height", height,
-                  "COG height [m]; 0 = the height in the home posture, or a lower one if the legs "
-                  "are straight in the home posture" +
-                      lower + ".")
+// `zero` says which height the value 0 stands for.
+void add_height(Command& command, double& height,
+                const std::string& zero =
+                    "the height in the home posture, or a lower height if the "
+                    "legs are straight in the home posture") {
+  command.add_option("--cog-height", height, "COG height [m]; 0 = " + zero + ".")
       ->capture_default_str()
       ->type_name("M");
 }
@@ -817,7 +817,7 @@ void add_step(Command& command, NewOptions& options) {
   add_gait(command, options);
   command
       .add_option("--length", options.stride,
-                  "Length of a step forward [m] (default: the robot steps in place).")
+                  "Length of each step forward [m] (default: the robot steps in place).")
       ->type_name("M");
 }
 
@@ -947,7 +947,9 @@ void add_kick(Command& command, NewOptions& options) {
              KickParameters().height, "M");
   add_scaled(command, "--period", options.period, "Time of the swing [s]", KickParameters().period,
              "S");
-  add_height(command, options.kick.cog_height, "; for a kick, lower by a quarter of --height");
+  add_height(command, options.kick.cog_height,
+             "a quarter of --height below the height in the home posture, or a still lower height "
+             "if the legs are straight in the home posture");
 }
 
 void add_turn(Command& command, NewOptions& options) {
@@ -1008,8 +1010,7 @@ void add_new(Command& app, Context& context) {
   Command* walk = command->add_subcommand("walk", "walk from rest to rest");
   add_walk(*walk, options);
   walk->callback([shared, &context] { new_walk(context, *shared); });
-  Command* step =
-      command->add_subcommand("step", "steps in place, or one step forward with --length");
+  Command* step = command->add_subcommand("step", "step in place, or forward with --length");
   add_step(*step, options);
   step->callback([shared, &context] { new_step(context, *shared); });
   Command* march = command->add_subcommand("march", "step in place with high steps");

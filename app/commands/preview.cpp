@@ -267,12 +267,11 @@ void add_picture_options(Command& command, PreviewOptions& options) {
       ->capture_default_str();
   command.add_option("--to", clip.end,
                      "Time of the motion at which the clip ends [s] (default: the end).");
-  command.add_option(
-      "--at", clip.at,
-      "Time of the picture, if the file is a single picture [s] (default: the first "
-      "of these times that exists: just after the first push, at the fall, in the middle of the "
-      "first flight; otherwise the time at which the posture differs most from the first "
-      "posture).");
+  command.add_option("--at", clip.at,
+                     "Time of the picture, if the file is a single picture [s]. The default is "
+                     "just after the first push. Without a push, it is the time of the fall. "
+                     "Without a fall, it is the middle of the first flight. Without a flight, it "
+                     "is the time at which the posture differs most from the first posture.");
   command
       .add_option("--strip", options.strip,
                   "Draw this number of snapshots into one .png, in rows of --columns.")
@@ -340,7 +339,7 @@ void add_preview(Command& app, Context& context) {
       ->type_name("FILE");
   command->add_option("--log", options->log, "Log of the run, for example open_loop.");
   command->add_option("--robot", options->robot,
-                      "Robot to use in place of the one that the run names.");
+                      "Robot to use in place of the robot that the run names.");
   command->add_option("--format", options->format, "Format of the clips of several runs.")
       ->check(one_of({"mp4", "webm", "gif", "apng", "png", "glb"}).description(""))
       ->capture_default_str();

@@ -243,8 +243,8 @@ void add_push(Command& app, Context& context) {
       "  ayumi push patterns/hoap1_walk.json -o out/push.json --map out/push.svg\n"
       "  ayumi push walk.json --profile hoap1-strong --controller dtad --controller dtad-literal\n"
       "  ayumi push walk.json --times 3.1 --times 3.4 --directions 4 --json\n"
-      "Run again with the same -o to continue a study. The scenario of the pattern is ignored, "
-      "including lasting disturbances (payload, friction, latency, ...).");
+      "Run the command again with the same -o to continue a study. The scenario of the pattern is "
+      "ignored, including lasting disturbances (payload, friction, latency, ...).");
   auto options = std::make_shared<PushCommand>();
   PushOptions& push = options->push;
   command->add_option("PATTERN", options->pattern, "Pattern file.")->required();
@@ -260,7 +260,7 @@ void add_push(Command& app, Context& context) {
   add_pattern_options(*command, options->input);
   command
       ->add_option("--controller", options->controllers,
-                   "Controller to compare with open loop; may be repeated (default: the controller "
+                   "Controller to compare with open loop. May be repeated (default: the controller "
                    "of the pattern).")
       ->type_name("NAME")
       ->allow_extra_args(false);

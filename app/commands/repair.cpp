@@ -512,8 +512,9 @@ void add_repair(Command& app, Context& context) {
       ->allow_extra_args(false);
   command
       ->add_option("--weight", options.weights,
-                   "Factor on the cost of moving this joint. With 10, the repair avoids moving the "
-                   "joint (default: the factor in the pattern; 1 if the pattern has none).")
+                   "Weight of this joint: factor on the cost of moving the joint. With 10, the "
+                   "repair avoids moving the joint (default: the weight in the pattern; 1 if the "
+                   "pattern has none).")
       ->type_name("JOINT=FACTOR")
       ->allow_extra_args(false);
   command
@@ -549,9 +550,8 @@ void add_repair(Command& app, Context& context) {
       ->add_option(
           "--safety", options.safety,
           "Weight of safety (distance from the limits) against the size of the change. With a "
-          "larger factor, the repair changes more to gain safety. 0 gives the smallest change that "
-          "passes "
-          "the check (default: the factor in the pattern; 1 if the pattern has none).")
+          "larger weight, the repair changes more to gain safety. 0 gives the smallest change that "
+          "passes the check (default: the weight in the pattern; 1 if the pattern has none).")
       ->check(number_within(RepairOptions::kSafety))
       ->type_name("FACTOR");
   command
@@ -570,7 +570,7 @@ void add_repair(Command& app, Context& context) {
       ->capture_default_str();
   command
       ->add_option("--tolerance", options.tolerances,
-                   "Tolerance of one kind of finding; see ayumi check --tolerances.")
+                   "Tolerance of one kind of finding. `ayumi check --tolerances` lists the kinds.")
       ->type_name("KIND=VALUE")
       ->allow_extra_args(false);
   add_pattern_options(*command, options.input);

@@ -296,7 +296,7 @@ void add_replay(Command& app, Context& context) {
       ->required();
   command
       ->add_option("--robot", options->robot,
-                   "Robot that plays the table (default: the one that the table names).")
+                   "Robot that plays the table (default: the robot that the table names).")
       ->type_name("ROBOT");
   command
       ->add_option(

@@ -54,10 +54,10 @@ TEST_F(Usage, HelpFitsTheTerminal) {
   for (std::string line; std::getline(kinds, line);) EXPECT_LE(line.size(), 80u) << line;
   ::unsetenv("COLUMNS");
   const std::string whole = ayumi({"import", "--help"}).out;
-  EXPECT_NE(
-      whole.find("  --order                     The columns are the joints of the robot, in the "
-                 "order of the robot's file.\n"),
-      std::string::npos)
+  EXPECT_NE(whole.find(
+                "  --order                     Take the columns as the joints of the robot, in the "
+                "order of the robot's file.\n"),
+            std::string::npos)
       << whole;
 }
 
