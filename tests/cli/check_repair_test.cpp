@@ -81,9 +81,10 @@ TEST_F(CheckRepair, TheMistakeIsNamedFirst) {
       "keyframes": [{"t": 0, "posture": "home", "zmp": "center"}, {"t": 1, "zmp": "left"},
                     {"t": 1.8, "zmp": "left"}, {"t": 2.4, "zmp": "center"}]})");
   const std::string step = ayumi({"check", "step.json", "-q"}).err;
-  EXPECT_NE(step.find("step.json: likely cause: /phases/1: the right foot's step forward is 30 m. "
-                      "With the number read in mm (0.03 m), or with a value of at most 0.0"),
-            std::string::npos)
+  EXPECT_NE(
+      step.find("step.json: likely cause: /phases/1: \"forward\" of the right foot's step is 30 m. "
+                "With the number read in mm (0.03 m), or with a value of at most 0.0"),
+      std::string::npos)
       << step;
   // A value that is written once is named once, however often the block is repeated.
   write(folder / "rounds.json", R"({"format": "ayumi.pattern/1", "robot": "hoap1",

@@ -211,8 +211,8 @@ Advice scrape_advice(const JudgedMotion&, const FindingWindow& window) {
   const std::string foot = name_of(foot_of(v));
   const double wanted = 0.01 * std::ceil(1e5 * (v.limit - v.value));  // in mm
   return {"the swinging " + foot + " sole scrapes the ground. One of its corners is " +
-              height_text(v.value) + " while it moves along the ground, but at least " +
-              text::fixed(1000 * v.limit, 2) + " mm are needed",
+              height_text(v.value) + " while it moves along the ground, but it must be at least " +
+              text::fixed(1000 * v.limit, 2) + " mm above the ground",
           "lift the foot " + text::fixed(wanted, 2) +
               " mm higher there, for example with a higher \"lift\" of this swing",
           kOrRepair};

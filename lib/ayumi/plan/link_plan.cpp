@@ -128,8 +128,8 @@ std::string other_unit(const Vector3d& place, double height) {
   for (const auto& [unit, factor] : {std::pair("cm", 1e-2), std::pair("mm", 1e-3)}) {
     const Vector3d meant = factor * place;
     if (meant.norm() < kSameUnit * height)
-      return std::string("lengths are in metres (these numbers in ") + unit + " would be " +
-             numbers(meant, 4) + " m). ";
+      return std::string("Lengths are in metres, and these numbers in ") + unit + " are " +
+             numbers(meant, 4) + " m. ";
   }
   return "";
 }

@@ -145,17 +145,18 @@ void stoops(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
       const bool before = low.t < end->t;
       const double push = longest_push(rise, speed, lasts);
       const double t = std::round(1000 * (before ? end->t - push : end->t + push)) / 1000;
-      made.push_back({Rank::geometry,
-                      {of.key_place(k),
-                       "t is " + seconds(low.t) + ", so the segment " +
-                           (before ? "from here to the lift-off" : "from the landing to here") +
-                           " lasts " + seconds(lasts) + ". The flight needs a COG speed of " +
-                           text::brief(speed, 2) + " m/s at its " + (before ? "beginning" : "end") +
-                           ". With this speed and this segment, the COG sinks " +
-                           text::fixed(1000 * sink, 0) + " mm below the height of this key",
-                       "with t = " + seconds(t)},
-                      [k = k, t](Pattern& p) { p.keyframes[k].t = t; },
-                      -sink});
+      made.push_back(
+          {Rank::geometry,
+           {of.key_place(k),
+            "t is " + seconds(low.t) + ", so the segment " +
+                (before ? "from this key to the lift-off" : "from the landing to this key") +
+                " lasts " + seconds(lasts) + ". The flight needs a COG speed of " +
+                text::brief(speed, 2) + " m/s at its " + (before ? "beginning" : "end") +
+                ". With this speed, the segment is so long that the COG sinks " +
+                text::fixed(1000 * sink, 0) + " mm below the height of this key",
+            "with t = " + seconds(t)},
+           [k = k, t](Pattern& p) { p.keyframes[k].t = t; },
+           -sink});
     }
   }
 }
