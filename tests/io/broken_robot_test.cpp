@@ -82,15 +82,17 @@ TEST(BrokenRobot, WhatIsNoFile) {
   const TemporaryFolder folder;
   EXPECT_EQ(message_of(folder, "missing.urdf"), "missing.urdf: no such file");
   std::filesystem::create_directory(folder.path() / "folder.urdf");
-  EXPECT_EQ(message_of(folder, "folder.urdf"),
-            "folder.urdf: this folder holds neither a robot.json nor exactly one robot in another "
-            "format; name the file of the robot");
+  EXPECT_EQ(
+      message_of(folder, "folder.urdf"),
+      "folder.urdf: this folder holds neither a robot.json nor exactly one robot file in another "
+      "format; name the file of the robot");
   EXPECT_EQ(message_of(folder, "empty_folder"),
             "robot 'empty_folder': no such file, folder or bundled robot");
   std::filesystem::create_directory(folder.path() / "bare");
-  EXPECT_EQ(message_of(folder, "bare"),
-            "bare: this folder holds neither a robot.json nor exactly one robot in another format; "
-            "name the file of the robot");
+  EXPECT_EQ(
+      message_of(folder, "bare"),
+      "bare: this folder holds neither a robot.json nor exactly one robot file in another format; "
+      "name the file of the robot");
   std::filesystem::create_symlink("loop.urdf", folder.path() / "loop.urdf");
   EXPECT_EQ(message_of(folder, "loop.urdf"),
             "loop.urdf: the file cannot be read (Too many levels of symbolic links)");
@@ -236,8 +238,7 @@ TEST(BrokenRobot, WrongMeshes) {
   reader ? setenv("AYUMI_MESH_READER", before.c_str(), 1) : unsetenv("AYUMI_MESH_READER");
   EXPECT_TRUE(
       unread.starts_with("r.urdf: link trunk: mesh trunk.obj cannot be read: the program "
-                         "ayumi-mesh-reader, which reads meshes, was not found; Ayumi "
-                         "looked for no/reader; "))
+                         "ayumi-mesh-reader, which reads meshes, was not found. Install Ayumi"))
       << unread;
   EXPECT_EQ(urdf_error(urdf(link(
                 "trunk", std::string(kInertia) + "<visual><geometry><cone/></geometry></visual>"))),
@@ -271,9 +272,10 @@ TEST(BrokenRobot, WrongSidecars) {
             "robot.json: /profiles: profile 'a': the speed of 'l_hip' is 0; it must be above 0");
   const TemporaryFolder folder;
   folder.write("robot.json", sidecar(""));
-  EXPECT_EQ(message_of(folder, "robot.json"),
-            "robot.json: /urdf: there is no file robot.urdf, and robot.urdf is neither in a folder "
-            "of --robot-path nor in its subfolder urdf/");
+  EXPECT_EQ(
+      message_of(folder, "robot.json"),
+      "robot.json: /urdf: there is no file robot.urdf, and no folder of --robot-path contains "
+      "robot.urdf or urdf/robot.urdf; correct the path");
   folder.write("robot.json", "");
   EXPECT_EQ(message_of(folder, "robot.json"), "robot.json: the file is empty, but JSON is needed");
   folder.write("robot.json", "{ \"format\": \"ayumi.pattern/1\" }");

@@ -425,12 +425,13 @@ TEST(FirstSidecar, TheTrunkCarriesBothLegs) {
   std::string text = UrdfBiped{}.text();
   const FirstSidecar plain =
       first_sidecar(folder.write("plain.urdf", text).string(), folder.path());
-  EXPECT_TRUE(says(plain.text, "Guess: the root link, the link that carries both legs"));
+  EXPECT_TRUE(says(plain.text, "Guess: this is the root link, which carries both legs"));
   EXPECT_NE(plain.text.find("\"trunk_link\": \"trunk\""), std::string::npos);
   std::string said;
   for (const std::string& item : plain.to_do) said += item + "\n";
-  EXPECT_NE(said.find("left l_foot, 130 mm long and 70 mm wide, reaching 80 mm ahead of the ankle "
-                      "and 50 mm behind it; right r_foot"),
+  EXPECT_NE(said.find("the left sole (link l_foot) is 130 mm long and 70 mm wide, and reaches 80 "
+                      "mm ahead of the ankle "
+                      "and 50 mm behind the ankle; the right sole (link r_foot)"),
             std::string::npos)
       << said;
   EXPECT_NE(said.find("Left: hip yaw l_hip_yaw, hip roll l_hip_roll, hip pitch l_hip_pitch, knee "

@@ -224,9 +224,9 @@ TEST(DocumentFormat, SaysWhatTheFileIs) {
   EXPECT_EQ(message("ayumi.postures/1", "ayumi.robot/1"),
             "mine.json: /format: this is a library of postures, but a robot is needed here; `ayumi "
             "posture list FILE` reads such a file");
-  EXPECT_EQ(
-      message("ayumi.robot/1", "ayumi.pattern/1"),
-      "mine.json: /format: this is a robot, and not a pattern; `ayumi inspect FILE` reads it");
+  EXPECT_EQ(message("ayumi.robot/1", "ayumi.pattern/1"),
+            "mine.json: /format: this is a robot, but a pattern is needed here; `ayumi inspect "
+            "FILE` reads such a file");
   EXPECT_EQ(message("ayumi.pattern/2", "ayumi.pattern/1"),
             "mine.json: /format: 'ayumi.pattern/2' cannot be read; this version of Ayumi reads "
             "'ayumi.pattern/1'");

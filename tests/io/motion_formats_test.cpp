@@ -597,7 +597,7 @@ TEST(MotionFormats, OneOfSeveralMotionsIsChosen) {
   ImportOptions options;
   options.motion = "jump";
   EXPECT_NE(refusal_of(text, "p.yaml", options)
-                .find("there is no motion 'jump'; the file has 1 'wave', 2 'bow'"),
+                .find("there is no motion 'jump'; the motions of the file are 1 'wave', 2 'bow'"),
             std::string::npos);
 
   // These are two pages of an action file that do not follow each other.
@@ -616,7 +616,7 @@ TEST(MotionFormats, OneOfSeveralMotionsIsChosen) {
   std::string said;
   for (const std::string& line : read_motion_rows(bytes, "a.bin", hoap1(), options).filled)
     said += line + "\n";
-  EXPECT_NE(said.find("the motion 9 'sit' is read; the file has 1 'nod', 9 'sit'"),
+  EXPECT_NE(said.find("the motion 9 'sit' is read; the motions of the file are 1 'nod', 9 'sit'"),
             std::string::npos)
       << said;
 }

@@ -210,7 +210,7 @@ TEST(MotionRefusals, RowsOfNumbers) {
        {"#WEBOTS_MOTION,V1.0,,l_knee\n0,p,0,0\n", "m.dat:1: a column has no name"},
        {"#WEBOTS_MOTION,V1.1\na%l_knee\n0%1\n", "the row has 2 cells"},
        {"0.02 2 ( 1 2 )\n0.02 1 ( 1 )\n", "m.dat:2: the row has 1 value, but the first row has 2"},
-       {"0 1 ( 1 )\n", "m.dat:1: dt 0 s is not above 0"},
+       {"0 1 ( 1 )\n", "m.dat:1: dt 0 s is not possible; the step must be above 0 s"},
        {"time,0,0.2,0.1\nl_knee,0,1,2\n", "m.dat:1: time 0.1 s does not come after 0.2 s"},
        {"time [ms],0,200,100\nl_knee,0,1,2\n", "m.dat:1: time 0.1 s does not come after 0.2 s"},
        // The first cell of rows without names is lost, although the other rows count.

@@ -151,8 +151,8 @@ TEST(PatternInFewWords, MistakesInBlocksAreNamed) {
   // The round is named, because the place alone does not identify it.
   EXPECT_NE(block(R"("repeat": 3, "count": "i", "phases": [{"until": "2 - ${i}",
                      "support": "both"}])")
-                .find("this phase begins at 2 s and ends at 1 s; give a later time; if 1 s are "
-                      "counted from the beginning of the phase, write \"duration\" in place of "
+                .find("this phase begins at 2 s and ends at 1 s; give a later time. If the 1 s are "
+                      "counted from the beginning of this phase, write \"duration\" in place of "
                       "\"until\" (round 2 of "
                       "3)"),
             std::string::npos);

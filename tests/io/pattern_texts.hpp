@@ -279,9 +279,8 @@ inline const std::vector<Broken>& mistakes() {
       {"repair", R"({"lock": {"windows": [[-1, 2]]}})",
        "-1 s is outside the range of times, 0 to 3600 s"},
       {"repair", R"({"weights": {"l_knee": 0}})",
-       "/repair/weights/l_knee: a weight must be above 0, but it is 0; to keep the joint still, "
-       "lock "
-       "the joint"},
+       "/repair/weights/l_knee: a weight must be above 0, but it is 0. If the joint must not "
+       "change, lock the joint"},
       {"repair", R"({"trust": "force"})",
        "/repair/trust: 'force' is not allowed; the allowed values are"},
       {"repair", R"({"margin": 0.2})",

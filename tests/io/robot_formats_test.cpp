@@ -685,7 +685,7 @@ TEST(Sdf, ShapesSensorsAndJointsOfTwoAxes) {
   EXPECT_NEAR(joint("follower").mimic_offset, 0.3, 1e-15);
   const std::vector<std::string>& notes = robot.assumptions;
   EXPECT_NE(std::find(notes.begin(), notes.end(),
-                      "links without <inertial> weigh 1 kg, as SDF says: head"),
+                      "links without <inertial> get a mass of 1 kg, as SDF defines it: head"),
             notes.end());
   EXPECT_EQ(RobotModel(robot).dof_count(), 3);
 }

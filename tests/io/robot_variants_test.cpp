@@ -195,12 +195,12 @@ TEST(RobotVariants, OnlyReadersOfUrdfIgnoreTheMassOfTheRoot) {
   const std::string biped = test::UrdfBiped{}.text();
   for (const char* const name : {"r.urdf", "r.xml", "r.sdf"})
     EXPECT_TRUE(says(load_robot_description(folder.write(name, biped).string()),
-                     "some URDF readers ignore it"))
+                     "Some URDF readers ignore the mass"))
         << name;
   const std::string sdf = test::sdf_text_of(RobotModel(parse_urdf(biped, "r.urdf", {})));
   for (const char* const name : {"s.sdf", "s.xml"})
     EXPECT_FALSE(says(load_robot_description(folder.write(name, sdf).string()),
-                      "some URDF readers ignore it"))
+                      "Some URDF readers ignore the mass"))
         << name;
 }
 

@@ -62,19 +62,19 @@ TEST(SidecarParts, AreRefusedWithTheirPlace) {
        "counts per degree cannot be 0"},
       {layout(R"("motors", "motors")"), "the column 'motors' is given twice"},
       {layout(R"("a", "interval", "motors")"), "the column 'interval' must be the first one"},
-      {layout(R"("a b", "motors")"), "'a b' is not the text of a column"},
+      {layout(R"("a b", "motors")"), "'a b' cannot be the text of a column"},
       {layout(R"("a")"), "the column 'motors' is missing"},
-      {layout(R"("interval", "motors")"), "after 'interval' must come \"2\""},
+      {layout(R"("interval", "motors")"), "after 'interval', a layout needs \"2\""},
       {layout(R"("interval", "2", "motors", "*")"), "'*' (any text) is possible only in layouts"},
       {layout(R"("motors")", R"(, "intervals_ms": [0])"), "an interval of 0 ms is not possible"},
       {layout(R"("interval", "2", "motors")", R"(, "unit": "rad")"),
-       "a layout with 'interval' holds servo targets"},
+       "a layout with 'interval' contains servo targets"},
       {R"({"layouts": [{"name": "a", "motors": 0, "columns": ["motors"]}]})",
        "0 motors are not possible; expected 1 to 127"},
       {R"({"sensors": {"load_cells": {"left": {"columns": [0], "cells": [[1, 0]], "force": [1]}}}})",
        "columns are counted from 1"},
       {R"({"sensors": {"load_cells": {"left": {"columns": [1], "cells": [], "force": [1]}}}})",
-       "there are 0 polynomials for 1 columns; give one for each"},
+       "there are 0 polynomials for 1 columns; give one polynomial for each"},
       {R"({"sensors": {"gyro": {"columns": [1, 2]}}})", "expected the columns of x, y and z"}};
   for (const auto& [members, part] : cases) expect_part(Changed(members).message(), part);
 }
