@@ -225,7 +225,7 @@ TEST_F(Replay, TheNoteBesideASequenceIsRead) {
   const Output replayed = ayumi({"replay", "h.csv", "--robot", "hoap1", "--plant", "ayumi"});
   EXPECT_NE(replayed.out.find("not for a robot, because the run fell at 2 s"), std::string::npos)
       << replayed.out;
-  EXPECT_NE(replayed.out.find("reactions to disturbances: 0.5 N s on cog at 1 s"),
+  EXPECT_NE(replayed.out.find("reactions of the robot to disturbances: 0.5 N s on cog at 1 s"),
             std::string::npos);
   const Output imported = ayumi({"import", "h.csv", "--robot", "hoap1", "-o", "i.json"});
   ASSERT_EQ(imported.exit_code, 0) << imported.err;
