@@ -122,7 +122,7 @@ TEST(CertifyCommand, RefusesResultsThatWereEdited) {
   edited.replace(edited.find("\"fell\""), 6, "\"stands\"");
   for (const auto& [text, why] :
        {std::pair(edited, "the file has changed since Ayumi wrote it"),
-        std::pair(older.dump(1), "older version of Ayumi wrote it, or it was changed")})
+        std::pair(older.dump(1), "older version of Ayumi wrote the file, or the file was changed")})
     for (const auto& [option, remedy] :
          {std::pair("-o", "replace the file with --force"),
           std::pair("--merge", "run the shard of this file again")}) {

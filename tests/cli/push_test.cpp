@@ -100,7 +100,8 @@ TEST(PushCommand, RefusesResultsThatWereEdited) {
   edited.replace(edited.find("\"capped\": false"), 15, "\"capped\": true ");
   for (const auto& [text, why] :
        {std::pair(edited, "the file has changed since Ayumi wrote it"),
-        std::pair(older.dump(1), "older version of Ayumi wrote it, or it was changed")}) {
+        std::pair(older.dump(1),
+                  "older version of Ayumi wrote the file, or the file was changed")}) {
     write(study.folder / "results.json", text);
     const Output refused = study.run(study.command);
     EXPECT_EQ(refused.exit_code, 3) << refused.out;

@@ -137,7 +137,7 @@ TEST_F(Replay, BadTablesLeaveNothing) {
   export_bow("hoap", "h.csv");
   const std::string good = contents(folder / "h.csv");
   const std::vector<std::pair<std::string, std::string>> cases = {
-      {good.substr(0, good.size() / 2 - 20), "columns, but the rows before have 25"},
+      {good.substr(0, good.size() / 2 - 20), "columns, but each row before it has 25"},
       {"", "ayumi"},
       {"1,2,nan" + good.substr(5), "is not a whole number from -32768 to 32767"},
       {"{\"format\": \"ayumi.pattern/1\", \"robot\": \"hoap1\"}", "this is a pattern"},

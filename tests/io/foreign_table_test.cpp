@@ -106,8 +106,8 @@ TEST(ForeignTable, IsReadWithTheMarksOfOtherPrograms) {
 TEST(ForeignTable, AColumnWithoutANameThatDoesNotCountTheRowsIsRefused) {
   const std::string lost =
       "a.csv:2: the first cell is empty, but only a column that counts the rows (0, 1, 2, ... or "
-      "1, 2, 3, ...) needs no name; write t into this cell if the column has the times, or remove "
-      "the column";
+      "1, 2, 3, ...) needs no name. If the column has the times, write t into this cell; otherwise "
+      "remove the column";
   const std::string times = "# of pandas\n" + table(",l_elbow,r_knee", ',', '.', 1, 1);
   EXPECT_EQ(refusal(times), lost);
   ImportOptions options;
@@ -228,10 +228,11 @@ TEST(ForeignTable, ColumnsOfTheRootAreReadByTheirNames) {
                             "pelvis_x,pelvis_y,pelvis_z,torso_qw,torso_qx,torso_qy,torso_qz",
                             "root_x,root_y,root_z,a,b,c,d"})
     EXPECT_NE(refusal(rooted(names)).find("of its 8 joints only l_elbow"), std::string::npos);
-  EXPECT_EQ(refusal("t,root_x,root_y,root_z,pelvis_x,pelvis_y,pelvis_z,qw,qx,qy,qz\n"
-                    "0,0,0,0,0,0,0,1,0,0,0\n0.1,0,0,0,0,0,0,1,0,0,0\n"),
-            "a.csv: the motion of the root may be in the columns of 'pelvis_x' and 'root_x'; keep "
-            "one of these groups");
+  EXPECT_EQ(
+      refusal("t,root_x,root_y,root_z,pelvis_x,pelvis_y,pelvis_z,qw,qx,qy,qz\n"
+              "0,0,0,0,0,0,0,1,0,0,0\n0.1,0,0,0,0,0,0,1,0,0,0\n"),
+      "a.csv: several groups of columns can be the motion of the root. These groups begin with "
+      "the columns 'pelvis_x' and 'root_x'; keep one of these groups");
 }
 
 // Only one column of times counts; the others are left out.
@@ -259,7 +260,7 @@ TEST(ForeignTable, MistakesAreOneLine) {
       "--unit deg if the angles are in degrees");
   EXPECT_EQ(refusal("\xFF\xFEt\0,\0"), "a.csv:1: the file is UTF-16 text; save the file as UTF-8");
   EXPECT_EQ(refusal("t l_elbow r_knee\n0 0 0\n1 0 0\n"),
-            "a.csv: only blanks separate the columns; use commas, semicolons or tabs");
+            "a.csv: the columns are separated by blanks; use commas, semicolons or tabs");
   EXPECT_EQ(refusal("t,l_elbow\n0,0\n0.2,0\n0.1,0\n"),
             "a.csv: data row 3: time 0.1 s does not come after 0.2 s of the row before; times must "
             "increase");

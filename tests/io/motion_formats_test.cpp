@@ -256,8 +256,9 @@ TEST(MotionFormats, ForeignFilesAreNamed) {
                 .find("this is a text without rows of numbers"),
             std::string::npos);
   // Numbers under words that are separated by blanks are a table with wrong separators.
-  EXPECT_NE(refusal_of("time l_knee r_knee\n0 0.1 0.2\n").find("only blanks separate"),
-            std::string::npos);
+  EXPECT_NE(
+      refusal_of("time l_knee r_knee\n0 0.1 0.2\n").find("the columns are separated by blanks"),
+      std::string::npos);
   for (const std::string& name : read_format_names())
     EXPECT_NE(refusal_of("???").find(name), std::string::npos) << name;
 }
