@@ -243,7 +243,7 @@ std::string outcome_text(const SimulationLog& log, size_t rows) {
   for (const Disturbance& disturbance : log.scenario)
     if (disturbance.at > end) late.push_back(disturbance);
   if (!late.empty())
-    text += "; the simulation ends at " + text::fixed(end, 2) +
+    text += ". The simulation ends at " + text::fixed(end, 2) +
             " s, so this part of the scenario has no effect: " + words_of(late);
   return text;
 }

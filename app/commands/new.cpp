@@ -119,9 +119,9 @@ std::vector<double> values_of(const Context& context, const RobotModel& model,
   const std::string changed = changed_values(dials, used(result.values));
   if (!result.falls.empty())
     context.print("the check accepts this motion" + (changed.empty() ? "" : " with " + changed) +
-                  ", but the robot falls in a simulation: " + result.falls + "; " +
+                  ", but the robot falls in a simulation: " + result.falls + ". In " +
                   std::to_string(result.tried) +
-                  " trials found no values that keep the robot standing\n");
+                  " trials, no values were found with which the robot stands\n");
   else if (result.found)
     context.print(model.name() +
                   " cannot do this motion with the default values. First error: " + result.limit +
@@ -367,7 +367,7 @@ void new_sway(Context& context, NewOptions options) {
       context, model, sway_pattern(model, p), options.file,
       {"The COG sways " + std::to_string(p.cycles) + " times, " + text::brief(p.side) +
            " m to either side and " + text::brief(p.forward) + " m ahead and back, over both feet.",
-       "The COG is at rest at every key; the ZMP is computed from the motion of the whole robot."});
+       "The COG is at rest at every key. The ZMP is computed from the motion of the whole robot."});
 }
 
 void new_squat(Context& context, NewOptions options) {
@@ -707,8 +707,10 @@ void new_excite(Context& context, const NewOptions& options) {
         continue;
       }
       const std::string limit = alone.nearest.empty() ? alone.limit : alone.nearest;
-      left_out += "  left out, because the robot cannot do it with any of these values: " +
-                  std::string(name_of(part)) + "; its limit is " + limit + "\n";
+      left_out += "  " + std::string(name_of(part)) +
+                  ": this part is left out, because the robot cannot do it with any of the values "
+                  "that were tried. Its limit is " +
+                  limit + "\n";
     }
     SearchResult rest;
     rest.limit = result.limit;

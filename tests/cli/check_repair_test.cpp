@@ -427,12 +427,28 @@ TEST_F(CheckRepair, CheckSaysWhereEachTrackComesFrom) {
       std::string::npos)
       << people;
   for (const char* track :
-       {"    base        solved from feet, torso and COG",
-        "    COG         solved from the ZMP keys for the full model", "    ZMP         keys"})
+       {"    base        computed from feet, torso and COG",
+        "    COG         computed from the ZMP keys for the full model", "    ZMP         keys"})
     EXPECT_NE(people.find(track), std::string::npos) << track << "\n" << people;
   const Json json = json_of(ayumi({"check", kWalk, "-q", "--json"}).out);
-  EXPECT_EQ(json.at("sampled_from").at("base"), "solved from feet, torso and COG");
+  EXPECT_EQ(json.at("sampled_from").at("base"), "computed from feet, torso and COG");
   EXPECT_EQ(json.at("sampled_from").at("zmp").get<std::string>().find("keys"), 0u);
+}
+
+// In an earlier version, repair called such a pattern consistent, and check called it inconsistent.
+TEST_F(CheckRepair, AGoalThatIsNotPossibleIsNotCalledConsistent) {
+  std::string text = contents(AYUMI_SOURCE_DIR "/patterns/hoap1_viip_walk.json");
+  text = std::regex_replace(text, std::regex("\"velocity\": *\\[[^\\]]*\\]"),
+                            "\"velocity\": [0.5, 0]");
+  write(folder / "far.json", text);
+  const Output checked = ayumi({"check", "far.json", "-q"});
+  EXPECT_EQ(checked.exit_code, 1) << checked.out;
+  const Output repaired = ayumi({"repair", "far.json", "-o", "r.json", "-q"});
+  EXPECT_EQ(repaired.out.find("already consistent"), std::string::npos) << repaired.out;
+  EXPECT_NE(repaired.out.find("repair cannot change goals of VIIP"), std::string::npos)
+      << repaired.out;
+  EXPECT_NE(repaired.out.find("a COG velocity of 0.5 m/s needs steps of"), std::string::npos)
+      << repaired.out;
 }
 
 TEST_F(CheckRepair, ReasonsOfExportAreListed) {
