@@ -253,7 +253,7 @@ KNOWN = [
     Mistake("a foothold of 0.9 m", "walk", far_foothold, r"^/phases/3.*(x is 0.9 m|foot lands 0.8\d* m from)"),
     Mistake("footholds exchanged", "walk", exchanged_footholds,
             r"^/phases/3.*/phases/5 were perhaps exchanged"),
-    Mistake("a missing swing", "walk", missing_swing, r"^/phases/3.*swing is missing"),
+    Mistake("a missing swing", "walk", missing_swing, r"^/phases/3.*swing of the \w+ foot is missing"),
     Mistake("COG height of 2.05 m", "walk", high_cog, r"^/defaults/cog_height.*2.05 m"),
     Mistake("COG height ten times too large", "squat", high_cog,
             r"^/keyframes/\d+.*the COG height is [1-9]\.?\d* m"),

@@ -172,7 +172,7 @@ TEST(ImpossibleValues, AMissingSwing) {
   const Pattern walk = sound_walk();
   const size_t phase = nth_swing(walk, 2);
   expect_called(mistakes_after([&](Pattern& pattern) { pattern.phases[phase].swing.reset(); }),
-                "/phases/" + std::to_string(phase), "Perhaps its swing is missing");
+                "/phases/" + std::to_string(phase), "Perhaps a swing of the right foot is missing");
 }
 
 TEST(ImpossibleValues, AKeyOfALegJoint) {

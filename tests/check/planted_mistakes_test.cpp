@@ -120,7 +120,7 @@ std::vector<Mistaken> make_list() {
       [](Pattern& p) { swing(p, 3).to.position.x() = 0.6; });
   add("footholds exchanged", small(), steps, "/phases/3: .*/phases/5 were perhaps exchanged",
       [](Pattern& p) { std::swap(swing(p, 3).to, swing(p, 5).to); });
-  add("missing swing", small(), steps, "/phases/3: .*Perhaps its swing is missing",
+  add("missing swing", small(), steps, "/phases/3: .*Perhaps a swing of the .* foot is missing",
       [](Pattern& p) { p.phases[3].swing.reset(); });
   add("degrees as radians", small(), wave, "/units: .*\"angle\": \"deg\"", [](Pattern& p) {
     p.degrees = false;
@@ -589,7 +589,7 @@ TEST(PlantedMistakes, EveryKeyOfALevelFootIsNamed) {
       std::regex(
           "\"position\": \\[0.07, 0.039, ([0-9.]+)\\], \"rpy\": \\[0, (-[0-9]+), 0\\]\\}; in "
           "/keyframes/3, \"left\": \\{\"position\": \\[-0.04, 0.039, 0.03\\], \"rpy\": \\[0, "
-          "([0-9]+), 0\\]\\}\\), the pattern would be consistent")))
+          "([0-9]+), 0\\]\\}. With these changes, the pattern would be consistent")))
       << found;
   kick.keyframes[4].feet[0]->position.z() = std::stod(lean[1]);
   kick.keyframes[4].feet[0]->rpy.y() = std::stod(lean[2]) * kDegree;
@@ -933,7 +933,8 @@ TEST(PlantedMistakes, AllKeysOfASwingAreNamedTogether) {
                                     {2.4, Foothold{{0.03, -0.125, 0.03}, {-32 * kDegree, 0, 0}}}});
   for (Keyframe& key : kick.keyframes) key.cog_height = 0.235;
   const std::string found = texts_of(likely_mistakes(small(), kick, options_of(kick)));
-  EXPECT_NE(found.find("With all keys of this swing nearer"), std::string::npos) << found;
+  EXPECT_NE(found.find("Move the right foot nearer to its place on the ground"), std::string::npos)
+      << found;
   const std::regex place("\\[(-?[0-9.]+), (-?[0-9.]+), (-?[0-9.]+)\\] in /keyframes/([34])");
   int places = 0;
   for (std::sregex_iterator it(found.begin(), found.end(), place), end; it != end; ++it, ++places)
@@ -960,11 +961,13 @@ TEST(PlantedMistakes, ASwingWithManyKeysIsNamedInFewWords) {
   }
   const std::string says = found.front().says.instead;
   EXPECT_TRUE(
-      says.starts_with("with all keys of this swing nearer and higher (the right foot at ["))
+      says.starts_with("move the right foot nearer to its place on the ground and higher in all "
+                       "keys of this swing: to ["))
       << says;
   EXPECT_TRUE(
-      says.ends_with("] in /keyframes/5, and in the later keys of this swing at 85 % of "
-                     "the distance from the line between the places of the foot on the ground),"))
+      says.ends_with("] in /keyframes/5. In the later keys, reduce the distance of "
+                     "the foot from the line between its two places on the ground to 85 %. With "
+                     "these changes"))
       << says;
 }
 

@@ -275,7 +275,7 @@ TEST(Sample, CogKeysGiveZmpAndForceOfTheFullModel) {
   const CommandSeries half = sample(model, pattern);
   EXPECT_NEAR(half.samples.back().cog.x(), 0.02, 1e-12);
   EXPECT_NEAR(half.samples.back().cog.y(), 0.0, 1e-9);
-  EXPECT_NE(half.origin.at("cog").find("solved in y"), std::string::npos);
+  EXPECT_NE(half.origin.at("cog").find("computed in y"), std::string::npos);
 }
 
 TEST(Sample, TorsoKeysTiltTheTrunkAndPostureKeysMoveTheArms) {

@@ -395,10 +395,11 @@ class Suspicions {
           (feet_->pose(idle, phase.until).translation() - feet_->pose(idle, begin).translation())
               .norm();
       if (std::abs(height) < kOnGround && moved < kOnGround)
-        found.push_back(
-            {phase_place(i), std::string("the robot stands on the ") + name_of(other(idle)) +
-                                 " foot alone, but the " + name_of(idle) +
-                                 " foot stays on the ground. Perhaps its swing is missing"});
+        found.push_back({phase_place(i), std::string("the robot stands on the ") +
+                                             name_of(other(idle)) + " foot alone, but the " +
+                                             name_of(idle) +
+                                             " foot stays on the ground. Perhaps a swing of the " +
+                                             name_of(idle) + " foot is missing"});
     }
     say(found);
   }

@@ -93,7 +93,7 @@ Advice torque_advice(const JudgedMotion& motion, const FindingWindow& window) {
   return "lower the load on " + motion.model.dofs()[v.item].name +
          ". If the inertia is the cause, " +
          slow_down_text(std::sqrt(std::abs(v.value / v.limit))) +
-         ". If the weight is the cause, shorten the lever of the weight" +
+         ". If the weight is the cause, shorten the lever arm of the weight" +
          straighter_leg(motion.model, v.item);
 }
 

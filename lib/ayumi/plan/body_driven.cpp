@@ -345,10 +345,10 @@ void describe(const SampleJob& job, const CogPlan& plan, const Worst& worst,
   const std::string source = job.tracks.zmp ? "the ZMP keys" : "the ZMP of the phases";
   if (any) {
     const std::string solved =
-        "solved" + axes + " from " + source +
+        "computed" + axes + " from " + source +
         (job.pattern.full_model ? " for the full model"
                                 : " for the point-mass model, equations (14)(15)") +
-        " (worst ZMP error " + millimetres(worst.zmp) + ")";
+        " (largest ZMP error " + millimetres(worst.zmp) + ")";
     origin["cog"] =
         both ? solved
              : "from keys in " + std::string(plan.solved[0] ? "y" : "x") + ", and " + solved;
@@ -376,7 +376,7 @@ void describe(const SampleJob& job, const CogPlan& plan, const Worst& worst,
           "momentum in flight is 0";
   }
   origin["feet"] = "phases and swings";
-  origin["base"] = "solved from feet, torso and COG";
+  origin["base"] = "computed from feet, torso and COG";
   if (job.ik.lacks_joints() &&
       (worst.lean > kNotedLean || std::max(worst.miss, worst.swing) > kNotedMiss)) {
     const size_t joints = std::min(job.ik.leg(Side::left).size(), job.ik.leg(Side::right).size());

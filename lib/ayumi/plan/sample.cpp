@@ -64,7 +64,8 @@ CommandSeries sample_posture(const RobotModel& model, const Pattern& pattern,
                       progress,
                       solving.plan_alone};
   CommandSeries series = tracks.joint_driven ? sample_joint_driven(job) : sample_body_driven(job);
-  if (!links.empty()) series.origin[links.origin()] = "solved from keys by the joints of the limb";
+  if (!links.empty())
+    series.origin[links.origin()] = "computed from keys, by moving the joints of the limb";
   for (const auto& [t, weight] : tracks.weight)
     series.joint_weight.push_back({std::lround(t / options.dt), weight});
   return series;

@@ -367,7 +367,8 @@ CutEnds cut_ends(const RobotModel& model, const RawMotion& motion) {
   cut.begin = !first.empty();
   cut.end = !last.empty();
   const std::string peak =
-      ", so the torques have a peak at this time. --ramp S, such as 0.5, lets the motion ";
+      ", so the torques have a peak at this time. --ramp S (for example --ramp 0.5) lets the "
+      "motion ";
   if (cut.begin)
     cut.words.push_back("the recording begins while the robot moves (" + first +
                         "). A robot that plays the recording starts from rest" + peak +

@@ -48,8 +48,10 @@ void swings(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
         {Rank::missing,
          {of.phase_place(i),
           std::string("the robot stands on the ") + name_of(other(idle)) + " foot alone, but the " +
-              name_of(idle) + " foot stays on the ground. Perhaps its swing is missing",
-          "with a swing to a place " + text::brief(step.forward, 3) + " m ahead of the other foot"},
+              name_of(idle) + " foot stays on the ground. Perhaps a swing of the " + name_of(idle) +
+              " foot is missing",
+          "with such a swing to a place " + text::brief(step.forward, 3) +
+              " m ahead of the other foot"},
          [i, idle, lift, step](Pattern& p) {
            p.phases[i].swing = Swing{.foot = idle, .to = {}, .lift = lift, .step = step};
          }});
