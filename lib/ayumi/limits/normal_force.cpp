@@ -52,7 +52,7 @@ bool normal_force_holds(JudgedMotion& motion, const Violation& v, double pace) {
 const char* normal_force_unit(const JudgedMotion&, const Violation&) { return "N"; }
 
 Advice normal_force_advice(const JudgedMotion&, const FindingWindow&) {
-  return {"the ground would have to pull the robot down, but it can only push",
+  return {"the ground would have to pull the robot down, but the ground can only push",
           "let the COG accelerate downwards by less than g, or plan a flight phase", ""};
 }
 
