@@ -122,7 +122,7 @@ TEST(Contradictions, AnotherNumberOfRoundsIsNamed) {
 TEST(Contradictions, AWrongDurationInABlockIsNamed) {
   expect_named(
       small(), steps_in_blocks({}), [](Pattern& p) { p = steps_in_blocks({.first_swing = 0.048}); },
-      "/phases/1/phases/0: the phase lasts 0.048 s; .* With a duration of 0.48 s, the pattern "
+      "/phases/1/phases/0: the phase lasts 0.048 s. .* With a duration of 0.48 s, the pattern "
       "would "
       "be consistent");
 }

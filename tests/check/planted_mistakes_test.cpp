@@ -144,7 +144,7 @@ std::vector<Mistaken> make_list() {
         for (Keyframe& key : p.keyframes)
           if (key.zmp) key.zmp->place = ZmpKey::Place::center;
       });
-  add("a time with a digit too many", small(), wave, "/keyframes/4: t is .* with t = 2.3 s",
+  add("a time with a digit too many", small(), wave, "/keyframes/4: t is .* With t = 2.3 s",
       [](Pattern& p) { p.keyframes[4].t = 2.03; });
   add("a leg key", small(), steps, "/keyframes/3: l_knee is a joint of a leg",
       [](Pattern& p) { p.keyframes[3].joints["l_knee"] = 1; });
@@ -349,7 +349,7 @@ TEST(PlantedMistakes, TargetsOfHandsInAnotherUnitAreNamed) {
           << first_cause(all);
       EXPECT_TRUE(std::regex_search(
           first_cause(one), std::regex(std::string("^/keyframes/2/hands/left: the left hand is .*"
-                                                   "with these numbers read in ") +
+                                                   "With these numbers read in ") +
                                        unit + ", .* the pattern would be consistent$")))
           << first_cause(one);
     }
