@@ -144,12 +144,14 @@ TEST(BrokenRobot, WrongMassesAndNumbers) {
     return "<inertial><mass value=\"" + mass + "\"/><inertia ixx=\"" + ixx +
            "\" ixy=\"0\" ixz=\"0\" iyy=\"0.01\" iyz=\"0\" izz=\"0.01\"/></inertial>";
   };
-  EXPECT_EQ(urdf_error(urdf(link("trunk") + link("l", "") + joint("j", "trunk", "l"))),
-            "r.urdf: link l: it has no <inertial> although a joint moves it; give it a mass and an "
-            "inertia");
-  EXPECT_EQ(with_trunk(inertia("0", "0.01")),
-            "r.urdf: link trunk: its mass is 0 although it is the root of a robot that moves; give "
-            "it a mass and an inertia");
+  EXPECT_EQ(
+      urdf_error(urdf(link("trunk") + link("l", "") + joint("j", "trunk", "l"))),
+      "r.urdf: link l: this link has no <inertial> although a joint moves this link; give the "
+      "link a mass and an inertia");
+  EXPECT_EQ(
+      with_trunk(inertia("0", "0.01")),
+      "r.urdf: link trunk: the mass of this link is 0 although it is the root of a robot that "
+      "moves; give the link a mass and an inertia");
   EXPECT_EQ(with_trunk(inertia("-2", "0.01")),
             "r.urdf: link trunk: mass -2 kg is negative; give the link its mass");
   EXPECT_EQ(with_trunk(inertia("nan", "0.01")),

@@ -575,7 +575,7 @@ TEST(FirstSidecar, TheInertiasOfFeetGiveTheSolesWhereTheMeshesAreMissing) {
   EXPECT_TRUE(std::any_of(sidecar.to_do.begin(), sidecar.to_do.end(), [](const std::string& item) {
     return item.find("6 meshes are missing and left out: ") != std::string::npos &&
            item.find("r_foot.stl") == std::string::npos &&
-           item.find(" and 3 more, which `ayumi inspect` lists; ") != std::string::npos;
+           item.find(" and 3 more (`ayumi inspect` lists all of them). ") != std::string::npos;
   }));
   EXPECT_TRUE(std::any_of(model.description().assumptions.begin(),
                           model.description().assumptions.end(), [](const std::string& all) {

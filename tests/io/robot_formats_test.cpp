@@ -806,7 +806,7 @@ TEST(RobotFormats, AChainOfMimicJointsIsShort) {
     return std::string("read");
   };
   EXPECT_EQ(words_for(21), "read");
-  EXPECT_NE(words_for(23).find("joint j1: this joint mimics another one through "
+  EXPECT_NE(words_for(23).find("joint j1: this joint mimics another joint through "
                                "more than 20 joints"),
             std::string::npos)
       << words_for(23);
