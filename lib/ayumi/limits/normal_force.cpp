@@ -68,9 +68,9 @@ const Limit& normal_force_limit() {
                     .limit_class = LimitClass::force,
                     .unit = "m g",
                     .tolerance = kLeastNormalShare,
-                    .meaning = "normal ground force in contact: an error when the ground would "
-                               "have to pull, a warning when the force is below the "
-                               "tolerance. The tolerance is a share of the weight",
+                    .meaning = "normal ground force in contact. A pull of the ground is an error; "
+                               "a force below the tolerance is a warning. The tolerance is a share "
+                               "of the weight",
                     .finding_unit = normal_force_unit,
                     .place = support_place,
                     .advice = normal_force_advice,

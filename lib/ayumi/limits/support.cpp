@@ -138,8 +138,8 @@ const Limit& support_limit() {
             .unit = "m",
             .tolerance = kLeastMargin,
             .meaning =
-                "distance from the ZMP to the edge of the support polygon: an error when the ZMP "
-                "is outside, a warning when it is inside by less than the tolerance",
+                "distance from the ZMP to the edge of the support polygon. A ZMP outside the "
+                "polygon is an error; a distance inside that is below the tolerance is a warning",
             .figure = {.key = "min_zmp_margin_m",
                        .label = "least ZMP margin",
                        .unit = "mm",

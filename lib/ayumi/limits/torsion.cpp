@@ -126,8 +126,8 @@ const Limit& torsion_limit() {
                     .unit = "1",
                     .tolerance = kWholeMoment,
                     .meaning = "moment about the normal of the ground at the ZMP, divided "
-                               "by the largest moment that friction can resist when the pressure "
-                               "under the soles is even",
+                               "by the largest moment that friction can resist. This largest "
+                               "moment is computed for an even pressure under the soles",
                     .figure = {.key = "max_yaw_ratio",
                                .label = "largest yaw moment",
                                .unit = "% of the moment that friction resists",
