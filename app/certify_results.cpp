@@ -76,7 +76,7 @@ std::string add_case_results(const std::filesystem::path& file, const Json& stud
   try {
     const auto json = shallow_json<nlohmann::json>(bytes);
     if (json.at("format") != kCertifyFormat)
-      refuse("this file does not hold results of ayumi certify");
+      refuse("this file does not contain results of ayumi certify");
     if (const std::string wrong = wrong_seal(bytes); !wrong.empty()) refuse(wrong + "; " + remedy);
     // The order of the keys does not matter.
     const auto& theirs = json.at("study");
@@ -85,7 +85,7 @@ std::string add_case_results(const std::filesystem::path& file, const Json& stud
       std::string key;
       for (const auto& [name, value] : ours.items())
         if (key.empty() && (!theirs.contains(name) || theirs.at(name) != value)) key = name;
-      refuse("this file holds the results of another study ('" + key + "' differs); " + remedy);
+      refuse("this file contains the results of another study ('" + key + "' differs); " + remedy);
     }
     shard = json.value("shard", "");
     for (const auto& row : json.at("cases")) {
@@ -98,7 +98,7 @@ std::string add_case_results(const std::filesystem::path& file, const Json& stud
       for (const double figure :
            {result.fell_at, result.cog_error, result.torque, result.foot_tilt})
         if (!(std::abs(figure) <= kLargestNumber))
-          refuse("case " + std::to_string(number) + " has the figure " + text::brief(figure) +
+          refuse("case " + std::to_string(number) + " has the value " + text::brief(figure) +
                  ", which no simulation gives; " + remedy);
       const auto [known, is_new] = cases.emplace(number, result);
       if (!is_new && !(known->second == result))
@@ -107,8 +107,9 @@ std::string add_case_results(const std::filesystem::path& file, const Json& stud
                "with --force");
     }
   } catch (const Json::exception&) {
-    refuse("this file does not hold results of ayumi certify, or a part of the file is missing; " +
-           remedy);
+    refuse(
+        "this file does not contain results of ayumi certify, or a part of the file is missing; " +
+        remedy);
   } catch (const std::out_of_range&) {
     refuse("this file has an outcome that this version of Ayumi does not know; " + remedy);
   }

@@ -180,7 +180,12 @@ std::vector<AnswerPart> finding_parts(const ConsistencyReport& report, const Rob
   if (groups.size() > shown)
     parts.push_back({Worth::verdict,
                      {"  " + text::counted(groups.size() - shown, "more group") +
-                      " of findings; `ayumi check --all` prints every finding\n"}});
+                      " of findings. `ayumi check --all` prints every finding\n"}});
+  const bool any = std::any_of(groups.begin(), groups.end(),
+                               [](const FindingGroup& g) { return !g.consequences.empty(); });
+  if (any)
+    parts.push_back(
+        {Worth::origin, {"  `ayumi check --tolerances` explains the names of the findings\n", ""}});
   return parts;
 }
 
@@ -193,11 +198,11 @@ std::vector<AnswerPart> check_parts(const ConsistencyReport& report, const Robot
   parts.push_back({Worth::figure,
                    {"  ZMP " + mm_text(std::abs(margin)) + (margin < 0 ? " outside" : " inside") +
                     " the support" + place(FindingKind::support_margin) +
-                    "; the motion of the full model differs from the command by at most " +
+                    ". The full model differs from the command by at most " +
                     mm_text(at(FindingKind::cog_residual)) + " in COG, " +
                     mm_text(at(FindingKind::zmp_residual)) + " in ZMP and " +
                     text::fixed(at(FindingKind::fz_residual), 2) +
-                    " N in f_z; that of the point mass by at most " +
+                    " N in f_z. The point mass differs by at most " +
                     mm_text(at(FindingKind::point_mass_gap)) + " in ZMP\n"}});
   parts.push_back(
       {Worth::figure, {"  share of the limits: " + shares_of_limits(report, model) + "\n"}});
@@ -215,9 +220,9 @@ std::vector<AnswerPart> check_parts(const ConsistencyReport& report, const Robot
   std::vector<std::string> forms = {feet + "\n"};
   if (!std::isnan(apart) && !bare.empty())
     forms = {
-        feet + "; self-collisions of " + text::join(bare, ", ") +
+        feet + ". Self-collisions of " + text::join(bare, ", ") +
             " are not checked, because these bodies have no collision shapes\n",
-        feet + "; " + text::counted(bare.size(), "body", "bodies") + " without collision shapes\n"};
+        feet + ". " + text::counted(bare.size(), "body", "bodies") + " without collision shapes\n"};
   parts.push_back({Worth::figure, forms});
   return parts;
 }

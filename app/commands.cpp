@@ -189,16 +189,14 @@ std::string option_message(const CLI::App& app, const CLI::ParseError& error) {
 
 // CLI11's message, or a better one that names the nearest command or option.
 std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
-  const auto chosen = app.get_subcommands();
-  const CLI::App& level = chosen.empty() ? app : *chosen.front();
-  std::vector<std::string> commands;
-  for (const CLI::App* command : app.get_subcommands(nullptr))
-    commands.push_back(command->get_name());
+  const CLI::App* deepest = &app;
+  while (!deepest->get_subcommands().empty()) deepest = deepest->get_subcommands().front();
+  const CLI::App& level = *deepest;
   for (const std::string& word : app.remaining(true)) {
     if (word.size() > 1 && word[0] == '-')
       return "unknown option '" + word + "'" +
              text::suggestion(word.substr(0, word.find('=')), option_names(level));
-    if (chosen.empty()) return "unknown command '" + word + "'" + text::suggestion(word, commands);
+    if (&level == &app) return "unknown command '" + word + "'" + subcommand_suggestion(app, word);
     if (!kinds_of(level).empty())
       return level.get_name() + ": unknown kind '" + word + "'; choose one of " +
              text::join(kinds_of(level), ", ") + text::suggestion(word, kinds_of(level));

@@ -391,7 +391,7 @@ const char* kTree =
     "rates.";
 const char* kFloating =
     "The velocity of the COG is the mass-weighted mean of the velocities of all links, the root "
-    "included. Relative to the base it is linear in the joint rates.";
+    "included. Relative to the base, this velocity is linear in the joint rates.";
 const char* kAnchored =
     "The robot is not bolted to the ground. The foot on which it stands is at rest, so the motion "
     "of the joints determines the motion of the base.";
@@ -405,19 +405,20 @@ const char* kPendulum =
     "reference COG moves to absorb the difference.";
 const char* kLong =
     "The long term of DTAD computes the ZMP that brings the COG back to the command. The ZMP moves "
-    "by more than the error of the COG (K > 1), and by still more while this error grows (D > 0; "
-    "the sign + of the term with D in the paper is a misprint). A ZMP outside the support is "
+    "by more than the error of the COG, because K > 1. While this error grows, the ZMP moves "
+    "further, because D > 0. The paper prints the term with D with a wrong sign. A ZMP outside the "
+    "support is "
     "replaced by the nearest point of the support, because the ground cannot push outside the "
     "feet.";
 const char* kResolve =
     "There are many sets of joint rates that give the COG its reference velocity while the "
     "free foot and the trunk follow the plan. This equation selects the set nearest to the "
-    "commanded rates, weighted with W. (v "
-    "is u - J_U cmd dtheta; the paper prints the other sign.)";
+    "commanded rates, weighted with W. v is u - J_U cmd dtheta. The paper prints v with a wrong "
+    "sign.";
 const char* kTask =
     "There are many sets of joint rates that give the COG its reference velocity while the "
-    "free foot and the trunk follow the plan. This equation asks for the set that is nearest to "
-    "the commanded rates, weighted with W. J_U and u stack the two conditions; (23) is the "
+    "free foot and the trunk follow the plan. This equation describes the set that is nearest to "
+    "the commanded rates, weighted with W. J_U and u contain both conditions. Equation (23) is the "
     "solution.";
 const char* kJump =
     "Height law of the variable impedant pendulum: a spring and a damper act between the COG and "

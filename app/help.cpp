@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "ayumi/base/text.hpp"
 #include "terminal.hpp"
 
 namespace ayumi::app {
@@ -13,7 +14,7 @@ std::string overview(const CLI::App& app) {
   std::string text =
       "Ayumi checks, stabilizes and exports motion patterns of humanoid robots.\n\n"
       "  robot + pattern -> check -> repair -> simulate -> tables, clips, report\n\n"
-      "Usage: ayumi COMMAND ...     Options and examples of a command: ayumi COMMAND --help\n\n";
+      "Usage: ayumi COMMAND ...     For the options of one command: ayumi COMMAND --help\n\n";
   for (const CLI::App* command : app.get_subcommands(nullptr)) {
     std::string line = "  " + command->get_name();
     line.resize(std::max<size_t>(line.size() + 1, 14), ' ');
@@ -33,7 +34,27 @@ std::string overview(const CLI::App& app) {
          "solution was found (for example no repair), 5 internal error, 130 stopped by Ctrl-C\n";
 }
 
+// The subcommands of this name below `level` at any depth, each with the words before it.
+std::vector<std::string> paths_to(const CLI::App& level, const std::string& name) {
+  std::vector<std::string> paths;
+  for (const CLI::App* command : level.get_subcommands(nullptr)) {
+    if (command->get_name() == name) paths.push_back(name);
+    for (const std::string& path : paths_to(*command, name))
+      paths.push_back(command->get_name() + " " + path);
+  }
+  return paths;
+}
+
 }  // namespace
+
+std::string subcommand_suggestion(const CLI::App& level, const std::string& word) {
+  const std::vector<std::string> paths = paths_to(level, word);
+  if (!paths.empty()) return "; did you mean '" + text::join(paths, "' or '") + "'?";
+  std::vector<std::string> names;
+  for (const CLI::App* command : level.get_subcommands(nullptr))
+    names.push_back(command->get_name());
+  return text::suggestion(word, names);
+}
 
 std::string examples_of(const CLI::App& app) {
   const CLI::App* const command = app.get_parent();

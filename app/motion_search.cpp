@@ -190,7 +190,7 @@ class MotionSearch {
     const double done = goes_on_from_ ? 0.5 + 0.5 * (work_ - *goes_on_from_) /
                                                   std::max(1.0, kMostWork - *goes_on_from_)
                                       : 0.5 * result_.tried / kMostSampled;
-    report(progress_, {"looking for a motion that passes", std::min(1.0, done), ""});
+    report(progress_, {"looking for a motion that passes the check", std::min(1.0, done), ""});
   }
 
   void take(const Values& values) {

@@ -20,13 +20,15 @@ constexpr double kLeastMove = 0.005 * EIGEN_PI / 180;
 std::string millimetres(double metres) { return text::fixed(1000 * metres, 1) + " mm"; }
 std::string seconds(double t) { return text::fixed(t, 3) + " s"; }
 
-std::string joint_words(const RobotModel& model, const JointChange& j) {
+// The change of a joint, such as "r_knee by up to -3.20 deg (at 1.700 s; moved within 1.30-5.09
+// s)".
+std::string joint_words(const RobotModel& model, const JointChange& j, const std::string& changed) {
   const bool slides = model.dofs()[model.find_dof(j.joint)].prismatic;
   const std::string sign = j.most > 0 ? "+" : "";
-  return j.joint + " by " + sign +
+  return j.joint + " by up to " + sign +
          (slides ? millimetres(j.most) : text::fixed(j.most * 180 / EIGEN_PI, 2) + " deg") +
-         " at " + seconds(j.at) + " (" + text::fixed(j.begin, 2) + "-" + text::fixed(j.end, 2) +
-         " s)";
+         " (at " + seconds(j.at) + "; " + changed + " within " + text::fixed(j.begin, 2) + "-" +
+         text::fixed(j.end, 2) + " s)";
 }
 
 std::string largest(const std::string& what, const LargestChange& change,
@@ -47,8 +49,7 @@ std::string motion_words(const RobotModel& model, const MotionChange& change,
   const std::string was = files ? " in " + names.first : " before",
                     is = files ? " in " + names.second : " after",
                     moved = files ? " differs" : " moved",
-                    changed = files ? " differs" : " changed",
-                    lead = files ? "  different angles: " : "  moved ",
+                    changed = files ? " differs" : " changed", lead = files ? "    " : "  moved ",
                     feet = files ? "feet differ" : "feet moved";
   std::string out;
   size_t listed = 0;
@@ -56,22 +57,28 @@ std::string motion_words(const RobotModel& model, const MotionChange& change,
          std::abs(change.joints[listed].most) >= kLeastMove)
     ++listed;
   if (listed == 0) out += files ? "  no joint differs\n" : "  no joint moved\n";
+  if (files && listed > 0)
+    out += "  the angles in " + names.second + " differ from those in " + names.first + ":\n";
   for (size_t i = 0; i < listed; ++i)
-    out += (i == 0 ? lead : std::string(lead.size(), ' ')) + joint_words(model, change.joints[i]) +
-           "\n";
+    out += (i == 0 ? lead : std::string(lead.size(), ' ')) +
+           joint_words(model, change.joints[i], files ? "different" : "moved") + "\n";
   const size_t rest = change.joints.size() - listed;
   if (listed == kJointsListed && rest > 0)
     out += std::string(lead.size(), ' ') + "and " +
            text::counted(rest, "more joint", "more joints") + " by smaller amounts\n";
-  if (change.cog.size > 5e-5 || change.foot.size > 5e-5)
-    out += "  " + largest("COG" + moved, change.cog, millimetres(change.cog.size)) + "; " +
-           largest(feet, change.foot, millimetres(change.foot.size)) + "\n";
-  if (change.zmp.size > 5e-5 || change.fz.size > 0.05)
-    out += "  " + largest("commanded ZMP" + changed, change.zmp, millimetres(change.zmp.size)) +
-           "; " + largest("f_z" + changed, change.fz, text::fixed(change.fz.size, 1) + " N") + "\n";
+  // Smaller changes would be written as 0.0.
+  constexpr double kLeastLength = 5e-5, kLeastForce = 0.05;
+  if (change.cog.size > kLeastLength)
+    out += largest("  COG" + moved, change.cog, millimetres(change.cog.size)) + "\n";
+  if (change.foot.size > kLeastLength)
+    out += largest("  " + feet, change.foot, millimetres(change.foot.size)) + "\n";
+  if (change.zmp.size > kLeastLength)
+    out += largest("  commanded ZMP" + changed, change.zmp, millimetres(change.zmp.size)) + "\n";
+  if (change.fz.size > kLeastForce)
+    out += largest("  f_z" + changed, change.fz, text::fixed(change.fz.size, 1) + " N") + "\n";
   return out + "  ZMP " + margin_words(before.summary[FindingKind::support_margin]) + was + ", " +
          margin_words(after.summary[FindingKind::support_margin]) + is +
-         "; distance of the COG from its command " +
+         "\n  distance of the COG from its command: " +
          millimetres(before.summary[FindingKind::cog_residual]) + was + ", " +
          millimetres(after.summary[FindingKind::cog_residual]) + is + "\n";
 }
@@ -90,7 +97,7 @@ std::string origin_words(const std::map<std::string, std::string>& origin) {
       {"joints", "joints"}, {"base", "base"}, {"feet", "feet"},
       {"torso", "torso"},   {"cog", "COG"},   {"cog_height", "COG height"},
       {"zmp", "ZMP"},       {"fz", "f_z"},    {"viip", "VIIP"}};
-  std::string out = "  sampled from\n";
+  std::string out = "  where each track comes from\n";
   for (const auto& [key, name] : kTracks) {
     const auto found = origin.find(key);
     if (found == origin.end()) continue;

@@ -150,11 +150,12 @@ KnownCases read_results(const std::filesystem::path& file, const Json& study, si
   const std::string bytes = read_file(file);
   try {
     const auto json = shallow_json<nlohmann::json>(bytes);
-    if (json.at("format") != kPushFormat) refuse("this file does not hold results of ayumi push");
+    if (json.at("format") != kPushFormat)
+      refuse("this file does not contain results of ayumi push");
     if (const std::string wrong = wrong_seal(bytes); !wrong.empty()) refuse(wrong);
     // The order of the keys does not matter.
     if (json.at("study") != nlohmann::json::parse(study.dump()))
-      refuse("this file holds the results of a study with other settings");
+      refuse("this file contains the results of a study with other settings");
     for (const auto& entry : json.at("cases")) {
       if (entry.at("limits").size() != study.at("controllers").size())
         refuse(
@@ -165,11 +166,11 @@ KnownCases read_results(const std::filesystem::path& file, const Json& study, si
       if (!counted)
         refuse("this file has a push whose index or number of runs is not a whole number");
       const PushCase push = case_from(entry);
-      if (!is_possible(push)) refuse("this file has a push with numbers that no push has");
+      if (!is_possible(push)) refuse("this file contains numbers that are not possible for a push");
       known.at(entry.at("index")) = push;
     }
   } catch (const Json::exception&) {
-    refuse("this file does not hold results of ayumi push");
+    refuse("this file does not contain results of ayumi push");
   } catch (const std::out_of_range&) {
     refuse("this file has a push that does not belong to this study");
   }

@@ -17,7 +17,7 @@ ReportInput report_input(const RunFolder& run, const std::string& file) {
     std::replace(label.begin(), label.end(), '_', ' ');
     input.runs.push_back({label, &log});
   }
-  if (input.runs.empty()) fail(ErrorCode::bad_file, {file}, "the run holds no simulation log");
+  if (input.runs.empty()) fail(ErrorCode::bad_file, {file}, "the run contains no simulation log");
   std::stable_partition(input.runs.begin(), input.runs.end(), [](const ReportRun& entry) {
     return entry.log->controller == ControllerKind::none;
   });

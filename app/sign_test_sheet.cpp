@@ -106,7 +106,8 @@ std::string sign_test_words(const RobotModel& model, const std::vector<SignTest>
            "of "
            "0, so a joint with a wrong sign does not jump when a test begins.";
   return "Caution: these joints do not begin at 0: " + bent +
-         ". When a test begins, each of them that has a wrong sign jumps to the opposite angle.";
+         ". When a test begins, each of these joints whose sign is wrong jumps to the opposite "
+         "angle.";
 }
 
 std::string sign_test_view(const RobotModel& model, const SignTest& test) {

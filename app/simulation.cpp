@@ -22,15 +22,14 @@ void add_simulation_options(Command& command, SimulationChoice& choice) {
           "--controller", choice.controller,
           "Controller (default: the controller of the pattern). The controllers of Ayumi are dtad "
           "and viip. The name 'none' selects the open loop. The controllers preview, foot-guided "
-          "and dcm-step "
-          "are other laws, for a comparison. dtad-literal, viip-landings and viip-nofeedback are "
-          "variants of dtad and viip. They only demonstrate what single parts of these laws "
-          "contribute.")
+          "and dcm-step are laws from other publications, for comparison. The controllers "
+          "dtad-literal, viip-landings and viip-nofeedback are variants of dtad and viip. Each "
+          "variant demonstrates what one part of these laws contributes.")
       ->type_name("NAME");
   command
       .add_option("--scenario", choice.scenario,
-                  "Disturbances: none, or a pattern file with the scenario to use (default: the "
-                  "scenario of the pattern).")
+                  "Disturbances: a pattern file with the scenario to use, or the word none "
+                  "(default: the scenario of the pattern).")
       ->type_name("F");
   command.add_option("--gain", choice.gains, "Set a gain of the controller.")
       ->type_name("GAIN=VALUE")
@@ -244,7 +243,7 @@ std::string outcome_text(const SimulationLog& log, size_t rows) {
   for (const Disturbance& disturbance : log.scenario)
     if (disturbance.at > end) late.push_back(disturbance);
   if (!late.empty())
-    text += "; the simulation ends at " + text::fixed(end, 2) +
+    text += ". The simulation ends at " + text::fixed(end, 2) +
             " s, so this part of the scenario has no effect: " + words_of(late);
   return text;
 }

@@ -133,26 +133,27 @@ void print_influences(const Context& context, std::vector<ValueInfluence> influe
                      return std::abs(a.correlation) > std::abs(b.correlation);
                    });
   context.print(
-      "  influence of each uncertain value. The first number is the rank correlation of the value "
-      "with how badly a run ends. Then follow the failed runs, first with the value in the lower "
-      "half of its range, then in the upper half.\n");
+      "  influence of each uncertain value: the rank correlation (-1 to 1) of the value with how "
+      "badly a run ends, and the failed runs in the lower and in the upper half of its range\n");
   for (size_t i = 0; i < std::min(influences.size(), kShownInfluences); ++i) {
     const ValueInfluence& each = influences[i];
-    context.print("    " + text::fixed(each.correlation, 2) + "  " + each.name + ": " +
-                  std::to_string(each.failures[0]) + " of " + std::to_string(each.runs[0]) + ", " +
-                  std::to_string(each.failures[1]) + " of " + std::to_string(each.runs[1]) + "\n");
+    context.print("    " + each.name + ": correlation " + text::fixed(each.correlation, 2) +
+                  ", failed " + std::to_string(each.failures[0]) + " of " +
+                  text::counted(each.runs[0], "run") + " in the lower half and " +
+                  std::to_string(each.failures[1]) + " of " + text::counted(each.runs[1], "run") +
+                  " in the upper half\n");
   }
 }
 
 void print_worst(const Context& context, bool degrees, const KnownResults& results,
                  const std::vector<long>& numbers) {
-  context.print("  worst cases (ayumi simulate --case N shows one):\n");
+  context.print("  worst cases (`ayumi simulate --case N` shows case N):\n");
   for (const long number : numbers) {
     const CaseResult& r = *results[static_cast<size_t>(number)];
     context.print("    case " + std::to_string(number) + ": " + name_of(r.outcome) +
                   (r.fell_at >= 0 ? " at " + text::fixed(r.fell_at, 2) + " s" : "") +
                   ", COG error " + text::fixed(1e3 * r.cog_error, 1) + " mm, torque " +
-                  text::fixed(100 * r.torque, 0) + " %, foot tilt " +
+                  text::fixed(100 * r.torque, 0) + " % of the limit, foot tilt " +
                   angle_words(r.foot_tilt, degrees, 1) + "\n");
   }
 }
@@ -170,13 +171,13 @@ Json print_sources(const Context& context, const Study& study) {
   for (const UncertainPush& push : study.uncertainty.pushes)
     for (const UncertainQuantity* q : {&push.size, &push.direction, &push.time, &push.link})
       add(*q);
-  context.print("  uncertainty of " + study.file + ": " +
-                text::counted(all.size(), "distribution") + "; " +
-                (assumed.empty() ? "none of them is assumed"
-                                 : std::to_string(assumed.size()) + " of them " +
-                                       (assumed.size() == 1 ? "is" : "are") +
-                                       " assumed: " + text::join(assumed, ", ")) +
-                "\n");
+  context.print(
+      "  uncertainty of " + study.file + ": " + text::counted(all.size(), "distribution") + ". " +
+      (assumed.empty() ? "None of them is assumed"
+                       : "The numbers of " + std::to_string(assumed.size()) +
+                             (assumed.size() == 1 ? " distribution are" : " distributions are") +
+                             " assumed: " + text::join(assumed, ", ")) +
+      "\n");
   return {{"file", study.file}, {"distributions", all}};
 }
 
@@ -401,8 +402,8 @@ void add_certify(Command& app, Context& context) {
       "Examples:\n  ayumi certify patterns/hoap1_walk.json --failure 0.01 --confidence 0.95\n"
       "  ayumi certify walk.json --study study.json -o out/cases.json --map out/matters.svg\n"
       "  ayumi certify walk.json --against-controller none --runs 299\n"
-      "Sensors always have noise, bias and latency. Run again with the same -o to continue. Exit "
-      "code 0: certified; 1: not certified.");
+      "certify always simulates noise, bias and latency of the sensors. Run the command again with "
+      "the same -o to continue. Exit code 0: certified. Exit code 1: not certified.");
   auto options = std::make_shared<CertifyCommand>();
   CertifyOptions& certify = options->certify;
   command->add_option("PATTERN", options->pattern, "Pattern file.")->required();

@@ -94,7 +94,7 @@ std::vector<AnswerPart> need_parts(const ActuatorNeed& need, const std::string& 
 std::vector<AnswerPart> refusal_parts(const Task& input, const Judgement& judgement) {
   std::vector<std::string> reasons = export_refusals(input, judgement);
   std::erase(reasons, judgement.reason());
-  return remark_parts("`export` refuses the table: ", reasons);
+  return remark_parts("`export` would refuse the table of this pattern: ", reasons);
 }
 
 // ---- the joints of a motion against their limits
@@ -442,10 +442,9 @@ void add_check(Command& app, Context& context) {
       ->allow_extra_args(false);
   command->add_flag("--tolerances", options.list_tolerances,
                     "List all kinds of findings with their tolerances.");
-  command->add_flag(
-      "--all", options.all,
-      "Print all findings and all other parts of the answer in full. Without this option, the "
-      "answer has one entry for each cause and fits on a screen.");
+  command->add_flag("--all", options.all,
+                    "Print every finding and all other parts of the answer in full. Without this "
+                    "option, the answer has one entry for each cause and fits on a screen.");
   command
       ->add_option("--plot", options.plot, "Draw the joints against their limits (.svg or .png).")
       ->type_name("F");

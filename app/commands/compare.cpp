@@ -58,7 +58,7 @@ Recordings read_recordings(const CompareCommand& options, const RobotModel& mode
     }
     if (all.angles)
       fail(ErrorCode::usage, {file},
-           "another file already holds joint angles; give only one such file");
+           "another file already contains joint angles; give only one such file");
     all.angles = read_angles(bytes, file, model, options.reading);
   };
   for (const std::string& file : options.measured) add(file, false);
@@ -242,7 +242,7 @@ void add_compare(Command& app, Context& context) {
                    "the only log of the run).")
       ->type_name("NAME");
   command->add_option("--robot", options.robot,
-                      "Robot to use in place of the one that the run names.");
+                      "Robot to use in place of the robot that the run names.");
   command
       ->add_option("--shift", options.shift,
                    "Time of the run at which the recording begins [s] (default: found from the "
@@ -261,10 +261,10 @@ void add_compare(Command& app, Context& context) {
                    "ghost (.html).")
       ->type_name("F");
   command
-      ->add_option("--measured-at", options.at,
-                   "What measured the angles. encoder: the encoders of the servos; the offsets "
-                   "that the robot's file states are added to their readings. joint: instruments "
-                   "at the joints.")
+      ->add_option(
+          "--measured-at", options.at,
+          "What measured the angles. encoder: the encoders of the servos. Ayumi adds to their "
+          "readings the offsets that the robot's file states. joint: instruments at the joints.")
       ->check(one_of({"encoder", "joint"}))
       ->capture_default_str();
   command->add_option("--unit", unit, "Unit of the joint columns whose names do not state a unit.")

@@ -130,18 +130,17 @@ void add_diff(Command& app, Context& context) {
   command->add_option("--plot", options.plot, "Draw both patterns over time (.svg or .png).")
       ->type_name("F");
   command
-      ->add_option(
-          "--weight", options.weights,
-          "Factor on the motion of this joint in the weighted change that is printed, as for "
-          "repair (default: the factor in the pattern; 1 if the pattern has none).")
+      ->add_option("--weight", options.weights,
+                   "Weight of this joint in the weighted change that diff prints. repair has the "
+                   "same option (default: the weight in the pattern; 1 if the pattern has none).")
       ->type_name("JOINT=FACTOR")
       ->allow_extra_args(false);
   command
       ->add_option(
           "--safety", options.safety,
-          "Factor on the cost of small distances from the limits. The output contains this "
-          "cost, and repair has the same factor (default: the factor in the pattern; 1 if the "
-          "pattern has none).")
+          "Factor on the cost of missing safety: B has this cost where it is nearer to the limits "
+          "than is safe. diff prints the cost if it is not negligible. repair has the same option "
+          "(default: the factor in the pattern; 1 if the pattern has none).")
       ->check(number_within(0.0, 1e6))
       ->type_name("FACTOR");
   add_pattern_options(*command, options.input);

@@ -192,9 +192,8 @@ std::string sides_in_words(const std::string& file, const std::vector<int>& line
   if (lines.empty()) return "";
   std::vector<std::string> numbers;
   for (const int line : lines) numbers.push_back(std::to_string(line));
-  return std::string("  not mirrored: the words that name a side in line") +
-         (lines.size() == 1 ? " " : "s ") + text::join(numbers, ", ") + " of " + file +
-         " (comments and names)\n";
+  return std::string("  comments and names are not mirrored. They name a side in line") +
+         (lines.size() == 1 ? " " : "s ") + text::join(numbers, ", ") + " of " + file + "\n";
 }
 
 void mirror(Context& context, const EditCommand& options) {
@@ -215,14 +214,14 @@ std::string in_words(double scale, const ConsistencyReport& before, const ForceR
   const ForceRange force = force_range(after.series);
   const auto mm = [](double metres) { return text::fixed(1e3 * metres, 1); };
   const auto newtons = [](const ForceRange& f) {
-    return text::fixed(f.least, 1) + " to " + text::fixed(f.most, 1) + " N";
+    return "from " + text::fixed(f.least, 1) + " to " + text::fixed(f.most, 1) + " N";
   };
   std::string out = "  the motion takes " + text::brief(scale) + " times its original time\n";
   if (pace)
     out += pace->bounded ? "  a faster pace fails: " + pace->limited_by + "\n"
                          : "  even the fastest pace that was tried passes the check\n";
   return out + "  ZMP margin " + mm(before.summary[FindingKind::support_margin]) + " mm before, " +
-         mm(after.report.summary[FindingKind::support_margin]) + " mm after; f_z " +
+         mm(after.report.summary[FindingKind::support_margin]) + " mm after\n  f_z " +
          newtons(force_before) + " before, " + newtons(force) + " after\n";
 }
 
@@ -274,19 +273,22 @@ std::string in_words(const std::vector<BindingLimit>& limits) {
 std::string in_words(const LocalPace& pace, bool pauses_kept) {
   std::string out = "  the motion takes " + text::brief(pace.scale) + " times its original time\n";
   if (pace.uniform)
-    out += std::string("  this is a uniform pace") +
-           (pauses_kept ? ", with pauses of their original length" : "") +
-           ", because the robot falls in open loop with the local timings that were tried\n";
+    out += std::string("  the result has a uniform pace") +
+           (pauses_kept ? ", and its pauses keep their length. Reason: " : ", because ") +
+           "the robot falls in open loop with the local timings that were tried\n";
   else
     out += "  share of the time in which each limit decides the pace: " + in_words(pace.binding) +
            "\n";
   if (!pace.stands.value_or(true))
     out +=
-        "  caution: in open loop the robot falls with this timing. At the uniform pace it stands, "
-        "but that motion does not pass the check\n";
+        "  caution: in open loop, the robot falls with this timing. It stands with the uniform "
+        "pace, "
+        "but the motion with the uniform pace does not pass the check\n";
   if (!pace.not_simulated.empty())
-    out += "  caution: whether the robot stands with this timing was not tried: " +
-           pace.not_simulated + "\n";
+    out +=
+        "  caution: this timing was not simulated, so it is not known whether the robot stands. "
+        "Reason: " +
+        pace.not_simulated + "\n";
   return out;
 }
 
@@ -510,7 +512,7 @@ void loop_cycle(Context& context, const EditCommand& options) {
       context, options, edited, check_edited(context, options, input, edited),
       "  the cycle is from " + text::fixed(begin, 3) + " to " + text::fixed(end, 3) +
           " s of the walk, and the " + name_of(cycle.first) +
-          " foot swings first; differences between the end and the beginning of the cycle: " +
+          " foot swings first. Differences between the end and the beginning of the cycle: " +
           gap_words(cycle.gap) + "\n" +
           (!options.alone ? "" : "  the motion begins and ends while the robot walks\n"),
       Json{{"times", options.times},
@@ -577,8 +579,9 @@ void loop(Context& context, const EditCommand& options) {
   replace_motion(input, repeated({input.pattern, input.series}, options.times, join));
   const Edited edited = in_own_text(options, given, input.pattern);
   write_edited(context, options, edited, check_edited(context, options, input, edited),
-               std::string("  the end of the motion is the same as its beginning") +
-                   (before.closed ? "" : " after a transition") + ": " + gap_words(closed) + "\n" +
+               std::string("  the motion ends as it begins") +
+                   (before.closed ? "" : ", because a transition was added") +
+                   ". Remaining differences: " + gap_words(closed) + "\n" +
                    (options.times > 1 || !before.closed ? kept_words(input.pattern, reason) : ""),
                Json{{"times", options.times},
                     {"closed_by_transition", !before.closed},
@@ -650,7 +653,7 @@ void add_edit_options(Command& command, EditCommand& options) {
   command.add_option("-o,--out", options.out, "Pattern file to write.")->required()->type_name("F");
   command
       .add_option("--tolerance", options.tolerances,
-                  "Tolerance of one kind of finding; see ayumi check --tolerances.")
+                  "Tolerance of one kind of finding. `ayumi check --tolerances` lists the kinds.")
       ->type_name("KIND=VALUE")
       ->allow_extra_args(false);
   add_pattern_options(command, options.input);
@@ -751,12 +754,11 @@ void add_edit(Command& app, Context& context) {
       "--local", options.local,
       "With --to-limits: slow the motion down only at the times at which a limit requires this.");
   retime_command
-      .add_option(
-          "--margin", options.margin,
-          "With --local: distance that the ZMP keeps from the edge of the support where this is "
-          "possible [m]. A smaller value allows a faster motion. Default: an eighth of the "
-          "sole's width, or 80 % of the smallest distance in the motion that --to-limits finds "
-          "without --local, whichever is larger.")
+      .add_option("--margin", options.margin,
+                  "With --local: distance from the edge of the support that is enough for the ZMP "
+                  "[m]. A smaller value allows a faster motion. Without this option, the ZMP keeps "
+                  "the larger of two distances: an eighth of the sole's width, and 80 % of the "
+                  "distance in the motion that --to-limits finds without --local.")
       ->check(number_within(LocalRetimeOptions::kMostMargin))
       ->type_name("M");
   retime_command.add_flag("--keep-pauses", options.keep_pauses,
@@ -770,8 +772,8 @@ void add_edit(Command& app, Context& context) {
       ->capture_default_str();
   loop_command
       .add_option("--over", options.over,
-                  "Duration of a transition from the end to the beginning [s]. It is added only if "
-                  "the motion does not end in the posture in which it begins.")
+                  "Duration of a transition from the end to the beginning [s]. The transition is "
+                  "added only if the motion does not end in the posture in which it begins.")
       ->check(number_within(0.02, 60.0))
       ->type_name("S");
   loop_command.add_flag("--cycle", options.cycle,

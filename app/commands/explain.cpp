@@ -139,7 +139,7 @@ void add_explain(Command& app, Context& context) {
                       "Run folder or log file, the sign @, and a time [s], for example out/@2.5.");
   command->add_option("--log", options->log, "Log of the run, for example open_loop.");
   command->add_option("--robot", options->robot,
-                      "Robot to use in place of the one that the run names.");
+                      "Robot to use in place of the robot that the run names.");
   command->callback([options, &context] { explain(context, *options); });
 }
 

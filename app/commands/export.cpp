@@ -234,7 +234,7 @@ void require_table_of_log(const ReferenceTrajectory& table, const ReferenceTraje
                       (a.cog - b.cog).norm() <= kRounding && (a.zmp - b.zmp).norm() <= kRounding &&
                       std::abs(a.fz - b.fz) <= kRounding && a.contact == b.contact;
     if (!same)
-      refuse("row " + std::to_string(k + 1) + " of the table is not that of the log of the run");
+      refuse("row " + std::to_string(k + 1) + " of the table differs from the log of the run");
   }
 }
 
@@ -500,13 +500,14 @@ bool holds_zeros(const ExportOptions& options, const ReferenceTrajectory& table)
 std::string words_on_zeros(const ExportOptions& options, const ReferenceTrajectory& table) {
   if (table.servo.zeros.isZero(0)) return "";
   if (!plays(options))
-    return "  joint angles; the offsets of this robot's encoders are not subtracted, because no "
-           "robot plays this format\n";
+    return "  the table contains joint angles. The offsets of this robot's encoders are not "
+           "subtracted, because no robot plays this format\n";
   std::vector<std::string> joints;
   for (size_t j = 0; j < table.joints.size(); ++j)
     if (const double zero = table.servo.zeros[static_cast<Eigen::Index>(j)]; zero != 0)
       joints.push_back(table.joints[j] + " " + text::fixed(zero * 180 / EIGEN_PI, 3));
-  return "  for this robot alone: the offsets of its encoders are subtracted (" +
+  return "  the table is for this robot alone, because the offsets of its encoders are subtracted "
+         "(" +
          text::join(joints, ", ") + " deg)\n";
 }
 
@@ -538,19 +539,18 @@ std::string in_words(const ExportOptions& options, const Source& source, const S
   if (!servo.content.empty()) text += "  " + words_of(servo) + "\n";
   text += words_on_zeros(options, safe.table);
   text += "  ramp " + text::brief(report.ramp) + " s, hold " + text::brief(report.hold) +
-          " s; the pattern begins at " + text::brief(report.ramp) + " s of the table";
+          " s. The pattern begins at " + text::brief(report.ramp) + " s of the table\n";
   if (!report.worst_joint.empty())
-    text += "; the largest step from row to row is that of " + report.worst_joint + " at " +
-            on_both_clocks(report.worst_at, report.ramp, report.ramp + report.motion) + ", " +
-            text::fixed(100 * report.max_step_ratio, 1) + " % of the limit";
+    text += "  the largest step from row to row is that of " + report.worst_joint + " at " +
+            on_both_clocks(report.worst_at, report.ramp, report.ramp + report.motion) + ": " +
+            text::fixed(100 * report.max_step_ratio, 1) + " % of the limit\n";
   const ShownUnit margin = shown_unit("rad", angles_in_degrees(source));
   if (!report.margin_joint.empty())
-    text += (report.min_limit_margin < 0 ? "; the joint farthest beyond its position limit is "
-                                         : "; the joint nearest to its position limit is ") +
+    text += (report.min_limit_margin < 0 ? "  the joint farthest beyond its position limit is "
+                                         : "  the joint nearest to its position limit is ") +
             report.margin_joint + ", " +
             text::brief(std::abs(report.min_limit_margin) * margin.scale, 3) + " " + margin.name +
-            (report.min_limit_margin < 0 ? " beyond this limit" : " from this limit");
-  text += "\n";
+            (report.min_limit_margin < 0 ? " beyond this limit\n" : " from this limit\n");
   for (const SafetyViolation& violation : report.violations)
     text += "  unsafe: " + text_of(violation, angles_in_degrees(source)) + "\n";
   if (!options.force_unsafe && plays(options) && (!source.unfit.empty() || !report.safe))
@@ -568,11 +568,11 @@ std::string words_on_sequence(const Source& source, const SafeTable& safe) {
   const HoapFile& file = source.kept->file;
   std::string text = "  the rows of the motion are the unchanged rows of the imported sequence";
   if (safe.report.ramp == 0 && safe.report.hold == 0)
-    text += "; --ramp S and --hold S add rows around them";
+    text += ". --ramp S adds rows before them, and --hold S adds rows after them";
   text += "\n";
   if (file.general_commands > 0)
-    text += "  commands to single devices in these rows: " + std::to_string(file.general_commands) +
-            ". The robot will carry out these commands\n";
+    text += "  these rows contain " + text::counted(file.general_commands, "command") +
+            " to single devices. The robot will carry out these commands\n";
   const std::vector<SequenceLayout> layouts = sequence_layouts(source.model);
   if (file.layout.name != layouts.front().name)
     text += "  the columns of these rows follow the layout " + file.layout.name + "; --layout " +
@@ -820,8 +820,8 @@ void add_export(Command& app, Context& context) {
       ->check(number_within(SafetyOptions::kRest));
   command
       ->add_option("--hold", options->hold,
-                   "Time for which the last posture is held [s] (default: 0.5; 0 for an imported "
-                   "sequence whose motion is unchanged).")
+                   "Time for which the last posture is held [s] (default: 0.5, or 0 if the pattern "
+                   "is an imported sequence whose motion is unchanged).")
       ->check(number_within(SafetyOptions::kRest));
   Option* interval =
       command
@@ -837,39 +837,38 @@ void add_export(Command& app, Context& context) {
       ->excludes(interval);
   command->add_option("--layout", options->layout,
                       "Name of the column layout for --format hoap, one of \"layouts\" in the "
-                      "sidecar (default: the first layout that states an interval, because Ayumi "
-                      "writes only such layouts).");
-  Option* posture = command
-                        ->add_option("--posture", options->safety.from,
-                                     "Posture of the robot before the ramp, or 'first' for the "
-                                     "first posture of the motion. With --sign-test, the "
-                                     "posture in which each test begins (default: all joints at "
-                                     "0).")
-                        ->type_name("NAME")
-                        ->capture_default_str();
+                      "sidecar (default: the first layout that states the interval from row to "
+                      "row; Ayumi cannot write other layouts).");
+  Option* posture =
+      command
+          ->add_option("--posture", options->safety.from,
+                       "Posture of the robot before the ramp. The name 'first' selects the first "
+                       "posture of the motion. With --sign-test: posture in which each test begins "
+                       "(default: all joints at 0).")
+          ->type_name("NAME")
+          ->capture_default_str();
   command->add_option("--profile", options->safety.profile,
                       "Actuator profile by which the table is judged (default: for hoap the first "
                       "profile of the robot, otherwise the profile of the pattern or run).");
   command->add_option("--log", options->log, "Log of the run, for example open_loop.");
   command->add_option("--robot", options->robot,
-                      "Robot to use in place of the one that the run names.");
+                      "Robot to use in place of the robot that the run names.");
   command->add_option("--set", options->set, "Set a parameter that the pattern declares.")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
   command->add_flag("--pushed", options->pushed,
                     "Export the table of the disturbed run. The head of the table says that it "
                     "contains the reactions to disturbances.");
-  command->add_flag(
-      "--force-unsafe", options->force_unsafe,
-      "Write the table even if it is unsafe, or if `export` refuses it for a robot, for example "
-      "because the robot fell. The head and "
-      "the name of the table then say so, for example walk.UNSAFE.csv.");
+  command->add_flag("--force-unsafe", options->force_unsafe,
+                    "Write the table even if it is unsafe, or if `export` refuses to write it, for "
+                    "example because the robot fell in the run. The head and the name of the table "
+                    "then state this, for example walk.UNSAFE.csv.");
   command
       ->add_option(
           "--servo", options->servo,
-          "Content of the targets: ideal (the joint angles), lead (the targets are ahead of "
-          "the posture by the lag of the profile's servos), or lead+sag (like lead, and "
-          "the targets also compensate for the sag under load). The default is lead for csv, json, "
+          "Content of the targets. ideal: the joint angles. lead: the targets are ahead of the "
+          "posture by the lag of the profile's servos. lead+sag: as lead, and the targets also "
+          "compensate for the sag of the joints under load. The default is lead for csv, json, "
           "hoap and gltf, and ideal for the formats of other programs.")
       ->check(one_of({"ideal", "lead", "lead+sag"}));
   command->footer(

@@ -144,8 +144,8 @@ void add_gains(Command& app, Context& context) {
       "  ayumi gains hoap1\n"
       "  ayumi gains hoap1 --time-constants 0.16,0.64 --absorb 0.6 --return-time 0.1\n"
       "  ayumi gains hoap1 --frequency 1 --damping 1 --latency 0.005\n"
-      "Unstable gains are refused, with the reason. A gain that is not given has the value of the "
-      "robot.");
+      "Unstable gains are refused, and the reason is printed. A gain that is not given keeps the "
+      "value in the robot's sidecar.");
   auto options = std::make_shared<GainsCommand>();
   command
       ->add_option("ROBOT", options->robot,

@@ -199,18 +199,19 @@ GaitMap map_of(const GaitGrid& grid, const std::string& title, const std::vector
 /// generated; 5: ...)", and the first of them with their reasons.
 std::string missing_words(const std::vector<Json>& entries, const char* noun,
                           const std::function<std::string(const Json&)>& name) {
-  std::vector<std::string> kinds;
+  std::string kinds;
   size_t all = 0;
   for (const Stage& stage : kStages) {
     const auto count = std::count_if(entries.begin(), entries.end(), [&](const Json& entry) {
       return is_missing(entry) && &stage_of(entry) == &stage;
     });
     all += static_cast<size_t>(count);
-    if (count > 0) kinds.push_back(std::to_string(count) + ": " + stage.words);
+    if (count > 0)
+      kinds += "    " + text::counted(count, noun) + " missing, because " + stage.words + "\n";
   }
   std::string text = "  " + text::counted(entries.size(), noun) + ": ";
-  text += std::to_string(entries.size() - all) + " made, " + std::to_string(all) + " missing" +
-          (all > 0 ? " (" + text::join(kinds, "; ") + ")" : "") + "\n";
+  text +=
+      std::to_string(entries.size() - all) + " made, " + std::to_string(all) + " missing\n" + kinds;
   size_t shown = 0;
   for (const Json& entry : entries) {
     if (!is_missing(entry) || entry.at("stage") == "neighbour") continue;

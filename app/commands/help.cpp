@@ -1,32 +1,25 @@
+#include "help.hpp"
+
 #include <CLI/CLI.hpp>
-#include <algorithm>
 
 #include "ayumi/base/error.hpp"
-#include "ayumi/base/text.hpp"
 #include "commands.hpp"
 
 namespace ayumi::app {
 
 namespace {
 
-// The names of the words that can stand after a command or a kind of it.
-std::vector<std::string> subcommand_names(const CLI::App& level) {
-  std::vector<std::string> names;
-  for (const CLI::App* command : level.get_subcommands([](const CLI::App*) { return true; }))
-    names.push_back(command->get_name());
-  return names;
-}
-
 // Prints the same text as `ayumi COMMAND --help`.
 void print_help(const CLI::App& app, const std::vector<std::string>& words) {
   const CLI::App* level = &app;
   std::string before = "ayumi";
   for (const std::string& word : words) {
-    const std::vector<std::string> names = subcommand_names(*level);
-    if (std::find(names.begin(), names.end(), word) == names.end())
-      fail(ErrorCode::usage,
-           "help: " + before + " has no command '" + word + "'" + text::suggestion(word, names));
-    level = level->get_subcommand(word);
+    const auto named = level->get_subcommands(
+        [&word](const CLI::App* command) { return command->get_name() == word; });
+    if (named.empty())
+      fail(ErrorCode::usage, "help: " + before + " has no command '" + word + "'" +
+                                 subcommand_suggestion(*level, word));
+    level = named.front();
     before += " " + word;
   }
   // App::help() of the program would print the help of the running command, which is this one.

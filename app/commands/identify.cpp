@@ -209,7 +209,7 @@ void add_identify(Command& app, Context& context) {
   command
       ->add_option(
           "-o,--out", options.out,
-          "Sidecar to write. The new sidecar has ROBOT as its base and adds the servo constants.")
+          "Sidecar to write. The new sidecar refers to ROBOT and adds the servo constants.")
       ->type_name("F");
   command
       ->add_option("--per", options.per,
@@ -223,12 +223,11 @@ void add_identify(Command& app, Context& context) {
                    "soles, otherwise fixed (default: auto).")
       ->check(one_of({"auto", "feet", "fixed"}));
   command
-      ->add_option(
-          "--measured-at", options.at,
-          "What measured the angles. encoder: the encoders of the servos; the offsets "
-          "that ROBOT states are added to their readings. joint: instruments at the "
-          "joints. Offsets of the encoders can be found only with such instruments. So the "
-          "new sidecar has new offsets only with --measured-at joint.")
+      ->add_option("--measured-at", options.at,
+                   "What measured the angles. encoder: the encoders of the servos. Ayumi adds to "
+                   "their readings the offsets that ROBOT states. joint: instruments at the "
+                   "joints. Only such instruments show the offsets of the encoders, so the new "
+                   "sidecar has new offsets only with --measured-at joint.")
       ->check(one_of({"encoder", "joint"}))
       ->capture_default_str();
   command->add_option("--unit", unit, "Unit of the joint columns whose names do not state a unit.")
@@ -242,10 +241,10 @@ void add_identify(Command& app, Context& context) {
       ->type_name("HZ");
   command
       ->add_option("--longest-lag", options.longest_lag_ms,
-                   "Largest time by which a servo may be behind its command [ms]. If the lag is "
-                   "larger, Ayumi refuses the recording, because the recording and the command "
-                   "probably do not begin at the same time (default: 30 or twice the lag of the "
-                   "slowest servo of ROBOT, whichever is larger).")
+                   "Largest time by which a servo may be behind its command [ms]. If a servo is "
+                   "further behind, Ayumi refuses the recording, because the recording and the "
+                   "command probably do not begin at the same time. The default is the larger of "
+                   "two times: 30 ms, and twice the lag of the slowest servo of ROBOT.")
       ->check(number_within(1000 * IdentifyOptions::kLongestLag.least,
                             1000 * IdentifyOptions::kLongestLag.most))
       ->type_name("MS");

@@ -129,16 +129,16 @@ void add_import(Command& app, Context& context) {
       ->check(number_within(ImportOptions::kRate))
       ->type_name("HZ");
   command
-      ->add_option(
-          "--signs", signs,
-          "Positive direction of the angles of the file: encoder = the direction in which the "
-          "encoder counts up, joint = the positive direction in the robot's file. The "
-          "option is for files in radians that have one column for each motor, in the order of the "
-          "motor numbers.")
+      ->add_option("--signs", signs,
+                   "Positive direction of the angles of the file. encoder: the direction in which "
+                   "the encoder counts up. joint: the positive direction in the robot's file. This "
+                   "option is for files in radians that have one column for each motor, in the "
+                   "order of the motor numbers.")
       ->check(one_of({"encoder", "joint"}))
       ->capture_default_str();
-  command->add_flag("--order", options.how.reading.by_order,
-                    "The columns are the joints of the robot, in the order of the robot's file.");
+  command->add_flag(
+      "--order", options.how.reading.by_order,
+      "Take the columns as the joints of the robot, in the order of the robot's file.");
   command
       ->add_option("--joints", options.how.reading.joints,
                    "Names of the joint columns, in the order of the file.")
@@ -176,19 +176,18 @@ void add_import(Command& app, Context& context) {
           "no sole carries it [multiple of the weight].")
       ->check(number_within(ContactThresholds::kLoad))
       ->capture_default_str();
-  command->add_flag(
-      "--commands", options.how.reading.commands,
-      "The angles of the file are servo targets, as export writes them. Ayumi then subtracts the "
-      "lead of the servos to get the joint angles. This is always done for reference tables, that "
-      "is, "
-      "for reference.csv of a run and for the csv and json tables of export.");
+  command->add_flag("--commands", options.how.reading.commands,
+                    "The angles of the file are servo targets, as export writes them. Servo "
+                    "targets are ahead of the posture by a time, the lead. Ayumi removes the lead "
+                    "to get the joint angles. For reference tables (reference.csv of a run, and "
+                    "the csv and json tables of export), Ayumi always does this.");
   command
-      ->add_option(
-          "--measured-at", at,
-          "What the angles are. encoder: measured or commanded angles as the encoders count them. "
-          "Ayumi adds to them the offsets that ROBOT states. joint: joint angles (default: "
-          "encoder with --commands and for files of robots, such as HOAP sequences; otherwise "
-          "joint). For a table that Ayumi wrote, the offsets in the head of the table are used.")
+      ->add_option("--measured-at", at,
+                   "What the angles are. encoder: angles as the encoders count them, measured or "
+                   "commanded. Ayumi adds to them the offsets that ROBOT states. joint: joint "
+                   "angles. The default is encoder with --commands and for files that a robot "
+                   "plays or records, such as HOAP sequences; otherwise it is joint. For a table "
+                   "that Ayumi wrote, the offsets in the head of the table are used.")
       ->check(one_of({"encoder", "joint"}));
   command
       ->add_option("--smooth", options.how.reading.smooth,

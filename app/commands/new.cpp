@@ -119,9 +119,9 @@ std::vector<double> values_of(const Context& context, const RobotModel& model,
   const std::string changed = changed_values(dials, used(result.values));
   if (!result.falls.empty())
     context.print("the check accepts this motion" + (changed.empty() ? "" : " with " + changed) +
-                  ", but the robot falls in a simulation: " + result.falls + "; " +
+                  ", but the robot falls in a simulation: " + result.falls + ". In " +
                   std::to_string(result.tried) +
-                  " trials found no values that keep the robot standing\n");
+                  " trials, no values were found with which the robot stands\n");
   else if (result.found)
     context.print(model.name() +
                   " cannot do this motion with the default values. First error: " + result.limit +
@@ -367,7 +367,7 @@ void new_sway(Context& context, NewOptions options) {
       context, model, sway_pattern(model, p), options.file,
       {"The COG sways " + std::to_string(p.cycles) + " times, " + text::brief(p.side) +
            " m to either side and " + text::brief(p.forward) + " m ahead and back, over both feet.",
-       "The COG is at rest at every key; the ZMP is computed from the motion of the whole robot."});
+       "The COG is at rest at every key. The ZMP is computed from the motion of the whole robot."});
 }
 
 void new_squat(Context& context, NewOptions options) {
@@ -707,8 +707,10 @@ void new_excite(Context& context, const NewOptions& options) {
         continue;
       }
       const std::string limit = alone.nearest.empty() ? alone.limit : alone.nearest;
-      left_out += "  left out, because the robot cannot do it with any of these values: " +
-                  std::string(name_of(part)) + "; its limit is " + limit + "\n";
+      left_out += "  " + std::string(name_of(part)) +
+                  ": this part is left out, because the robot cannot do it with any of the values "
+                  "that were tried. Its limit is " +
+                  limit + "\n";
     }
     SearchResult rest;
     rest.limit = result.limit;
@@ -744,12 +746,12 @@ void add_scaled(Command& command, const char* name, std::optional<double>& value
       ->type_name(type);
 }
 
-void add_height(Command& command, double& height, const std::string& lower = "") {
-  command
-      .add_option("--cog-height", height,
-                  "COG height [m]; 0 = the height in the home posture, or a lower one if the legs "
-                  "are straight in the home posture" +
-                      lower + ".")
+// `zero` says which height the value 0 stands for.
+void add_height(Command& command, double& height,
+                const std::string& zero =
+                    "the height in the home posture, or a lower height if the "
+                    "legs are straight in the home posture") {
+  command.add_option("--cog-height", height, "COG height [m]; 0 = " + zero + ".")
       ->capture_default_str()
       ->type_name("M");
 }
@@ -817,7 +819,7 @@ void add_step(Command& command, NewOptions& options) {
   add_gait(command, options);
   command
       .add_option("--length", options.stride,
-                  "Length of a step forward [m] (default: the robot steps in place).")
+                  "Length of each step forward [m] (default: the robot steps in place).")
       ->type_name("M");
 }
 
@@ -947,7 +949,9 @@ void add_kick(Command& command, NewOptions& options) {
              KickParameters().height, "M");
   add_scaled(command, "--period", options.period, "Time of the swing [s]", KickParameters().period,
              "S");
-  add_height(command, options.kick.cog_height, "; for a kick, lower by a quarter of --height");
+  add_height(command, options.kick.cog_height,
+             "a quarter of --height below the height in the home posture, or a still lower height "
+             "if the legs are straight in the home posture");
 }
 
 void add_turn(Command& command, NewOptions& options) {
@@ -1008,8 +1012,7 @@ void add_new(Command& app, Context& context) {
   Command* walk = command->add_subcommand("walk", "walk from rest to rest");
   add_walk(*walk, options);
   walk->callback([shared, &context] { new_walk(context, *shared); });
-  Command* step =
-      command->add_subcommand("step", "steps in place, or one step forward with --length");
+  Command* step = command->add_subcommand("step", "step in place, or forward with --length");
   add_step(*step, options);
   step->callback([shared, &context] { new_step(context, *shared); });
   Command* march = command->add_subcommand("march", "step in place with high steps");

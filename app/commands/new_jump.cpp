@@ -274,9 +274,10 @@ void add_new_jump(Command& parent, Context& context) {
                        scaled(JumpParameters().height))
       ->type_name("M");
   command
-      ->add_option("--stoop", options.stoop,
-                   "How far the COG is lowered before the jump, below its height at lift-off [m]" +
-                       scaled(JumpParameters().stoop))
+      ->add_option(
+          "--stoop", options.stoop,
+          "Stoop: how far the COG is lowered before the jump, below its height at lift-off [m]" +
+              scaled(JumpParameters().stoop))
       ->type_name("M");
   command
       ->add_option("--cog-height", options.cog_height,

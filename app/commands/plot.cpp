@@ -161,7 +161,7 @@ void add_plot(Command& app, Context& context) {
       ->check(one_of(frame_names()).description(""))
       ->capture_default_str();
   command->add_option("--robot", options->robot,
-                      "Robot to use in place of the one that the run names.");
+                      "Robot to use in place of the robot that the run names.");
   command->footer(
       "Examples:\n"
       "  ayumi plot out/ -o loci.svg            open loop, closed loop and command together\n"

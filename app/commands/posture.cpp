@@ -338,7 +338,8 @@ Command& add_kind(Command& parent, const std::string& name, const std::string& w
   Command* command = parent.add_subcommand(name, what);
   command->add_option("SOURCE", options->source, source_words)->required()->type_name(source);
   command
-      ->add_option("--robot", options->robot, "Robot to use in place of the one that SOURCE names.")
+      ->add_option("--robot", options->robot,
+                   "Robot to use in place of the robot that SOURCE names.")
       ->type_name("ROBOT");
   return *command;
 }
@@ -354,7 +355,7 @@ void add_library(Command& command, const Options& options,
       ->type_name("NAME");
   command
       .add_option("-o,--out", options->out,
-                  "Posture library to write; if the file exists, the posture is added to it.")
+                  "Posture library to write. If the file exists, the posture is added to the file.")
       ->required()
       ->type_name("F");
   command.add_flag("--rad", options->radians, radians);
@@ -395,7 +396,7 @@ void add_posture(Command& app, Context& context) {
   add_name(adjusted, options);
   adjusted
       .add_option("--joint", options->joints,
-                  "Angle of a joint [deg], or place of a sliding joint [m]; may be repeated.")
+                  "Angle of a joint [deg], or place of a sliding joint [m]. May be repeated.")
       ->required()
       ->type_name("JOINT=ANGLE")
       ->allow_extra_args(false);

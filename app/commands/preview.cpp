@@ -267,19 +267,19 @@ void add_picture_options(Command& command, PreviewOptions& options) {
       ->capture_default_str();
   command.add_option("--to", clip.end,
                      "Time of the motion at which the clip ends [s] (default: the end).");
-  command.add_option(
-      "--at", clip.at,
-      "Time of the picture, if the file is a single picture [s] (default: the first "
-      "of these times that exists: just after the first push, at the fall, in the middle of the "
-      "first flight; otherwise the time at which the posture differs most from the first "
-      "posture).");
+  command.add_option("--at", clip.at,
+                     "Time of the picture, if the file is a single picture [s]. The default is "
+                     "just after the first push. Without a push, it is the time of the fall. "
+                     "Without a fall, it is the middle of the first flight. Without a flight, it "
+                     "is the time at which the posture differs most from the first posture.");
   command
       .add_option("--strip", options.strip,
                   "Draw this number of snapshots into one .png, in rows of --columns.")
       ->check(whole_number_within(StripOptions::kCount));
   command
-      .add_option("--exposures", options.exposures,
-                  "Number of postures that are drawn into one .png, evenly spaced in time.")
+      .add_option(
+          "--exposures", options.exposures,
+          "Draw this number of postures over each other into one .png, evenly spaced in time.")
       ->check(whole_number_within(StripOptions::kExposures));
   command
       .add_option("--columns", options.columns,
@@ -302,10 +302,10 @@ void add_picture_options(Command& command, PreviewOptions& options) {
       .add_option("--zoom", clip.camera.zoom, "Magnification: 2 draws the robot twice as large.")
       ->capture_default_str();
   command
-      .add_option(
-          "--ghost", options.ghost,
-          "Also draw a second, translucent robot. It shows the 'command', a log of the run such "
-          "as open_loop, another run, or a pattern of the same robot.")
+      .add_option("--ghost", options.ghost,
+                  "Also draw a second, translucent robot. RUN says which motion this robot shows: "
+                  "the word command (the commanded posture), the name of a log of the run such as "
+                  "open_loop, another run, or a pattern of the same robot.")
       ->type_name("RUN");
   for (const auto& [name, list, what] :
        {std::tuple{"--hide", &options.hide,
@@ -339,7 +339,7 @@ void add_preview(Command& app, Context& context) {
       ->type_name("FILE");
   command->add_option("--log", options->log, "Log of the run, for example open_loop.");
   command->add_option("--robot", options->robot,
-                      "Robot to use in place of the one that the run names.");
+                      "Robot to use in place of the robot that the run names.");
   command->add_option("--format", options->format, "Format of the clips of several runs.")
       ->check(one_of({"mp4", "webm", "gif", "apng", "png", "glb"}).description(""))
       ->capture_default_str();

@@ -18,6 +18,7 @@
 #include "pattern_input.hpp"
 #include "push_results.hpp"
 #include "simulation.hpp"
+#include "terminal.hpp"
 
 namespace ayumi::app {
 
@@ -121,7 +122,11 @@ std::string ratio_text(const PushLimit& limit, double bound) {
 std::string table(const std::vector<PushCase>& cases, const PushOptions& push,
                   const CommandSeries& series) {
   const std::string open = push_baseline(series);
-  constexpr size_t kLabel = 16, kCell = 7;  // widths of columns [characters]
+  constexpr size_t kCell = 7;  // width of a column [characters]
+  size_t label_width = open.size();
+  for (const ControllerSpec& c : push.controllers)
+    label_width = std::max(label_width, std::string(name_of(c.type)).size());
+  label_width += std::string(" J/m, m/s ").size();
   const size_t directions = static_cast<size_t>(push.directions);
   std::string out;
   for (size_t p = 0; p < cases.size() / directions; ++p) {
@@ -130,7 +135,7 @@ std::string table(const std::vector<PushCase>& cases, const PushOptions& push,
     const std::string at = text::fixed(row->phase.at, 3) + " s";
     out += (row->phase.name == "t = " + at ? "" : row->phase.name + ", ") + "push at " + at + "\n";
     const auto line = [&](const std::string& label, const auto& cell) {
-      out += "  " + label + std::string(label.size() < kLabel ? kLabel - label.size() : 1, ' ');
+      out += "  " + padded(label, label_width);
       for (size_t i = 0; i < directions; ++i) out += push_cell(cell(row[i]), kCell);
       out += "\n";
     };
@@ -141,21 +146,22 @@ std::string table(const std::vector<PushCase>& cases, const PushOptions& push,
       line(name_of(push.controllers[k].type) + ", N s",
            [k](const PushCase& c) { return impulse_text(c.limits[k]); });
     line("B, N s", [](const PushCase& c) { return text::fixed(c.bound, 2); });
-    line(open + " / B", [](const PushCase& c) { return ratio_text(c.open_loop, c.bound); });
+    line(open + ", x B", [](const PushCase& c) { return ratio_text(c.open_loop, c.bound); });
     for (size_t k = 0; k < push.controllers.size(); ++k)
-      line(name_of(push.controllers[k].type) + " / B",
+      line(name_of(push.controllers[k].type) + ", x B",
            [k](const PushCase& c) { return ratio_text(c.limits[k], c.bound); });
     for (size_t k = 0; k < push.controllers.size(); ++k)
-      line(name_of(push.controllers[k].type) + " J/m",
+      line(name_of(push.controllers[k].type) + " J/m, m/s",
            [k](const PushCase& c) { return text::fixed(push_speed(c, c.limits[k].impulse), 3); });
     for (size_t k = 0; k < push.controllers.size(); ++k)
       line(name_of(push.controllers[k].type) + " J/mv",
            [k](const PushCase& c) { return text::fixed(push_froude(c, c.limits[k].impulse), 3); });
   }
   out += std::string(kPushBoundLegend) +
-         "; + = the robot survived even the largest push that was tried\n"
-         "J/m = speed that the push gives to the COG, in m/s; J/mv = this speed divided by v = "
-         "sqrt(g z), where z is the height of the COG above the ZMP\n";
+         ". x B = the largest push that the robot survived, as a multiple of B. + = the robot "
+         "survived even the largest push that was tried\n"
+         "J/m = speed that the push gives to the COG. J/mv (without a unit) = this speed divided "
+         "by v = sqrt(g z), where z is the height of the COG above the ZMP\n";
   for (const std::string& line : push_summary_lines(cases, push, series)) out += line + "\n";
   return out;
 }
@@ -237,8 +243,8 @@ void add_push(Command& app, Context& context) {
       "  ayumi push patterns/hoap1_walk.json -o out/push.json --map out/push.svg\n"
       "  ayumi push walk.json --profile hoap1-strong --controller dtad --controller dtad-literal\n"
       "  ayumi push walk.json --times 3.1 --times 3.4 --directions 4 --json\n"
-      "Run again with the same -o to continue a study. The scenario of the pattern is ignored, "
-      "including lasting disturbances (payload, friction, latency, ...).");
+      "Run the command again with the same -o to continue a study. The scenario of the pattern is "
+      "ignored, including lasting disturbances (payload, friction, latency, ...).");
   auto options = std::make_shared<PushCommand>();
   PushOptions& push = options->push;
   command->add_option("PATTERN", options->pattern, "Pattern file.")->required();
@@ -254,7 +260,7 @@ void add_push(Command& app, Context& context) {
   add_pattern_options(*command, options->input);
   command
       ->add_option("--controller", options->controllers,
-                   "Controller to compare with open loop; may be repeated (default: the controller "
+                   "Controller to compare with open loop. May be repeated (default: the controller "
                    "of the pattern).")
       ->type_name("NAME")
       ->allow_extra_args(false);

@@ -125,12 +125,13 @@ std::string start_words(const Pattern& pattern, const GeneratedMotion& made) {
   std::string out = "  the motion was made from postures with the planned feet and ";
   out += made.least_sway ? "a COG that sways as little as the supports allow"
          : made.cog == PlannedCog::zmp
-             ? "a COG that follows the ZMP; of its keys, only the first and the last are used"
+             ? "a COG that follows the ZMP. Only the first and the last key of the COG are used"
              : "the planned COG";
   if (made.lowered > 0)
-    out += "; the COG is " + text::fixed(1e3 * made.lowered, 1) + " mm lower than " +
-           (pattern.cog_height > 0 ? "cog_height of the defaults" : "by default");
-  if (made.repair.iterations == 0) out += "; nothing had to be corrected";
+    out += ". The COG is " + text::fixed(1e3 * made.lowered, 1) + " mm lower than " +
+           (pattern.cog_height > 0 ? "\"cog_height\" of the \"defaults\" in the pattern"
+                                   : "the default COG height");
+  if (made.repair.iterations == 0) out += ". Nothing had to be corrected";
   out += "\n";
   const size_t named = std::min(made.missed.size(), kMissedListed);
   std::vector<std::string> places;
@@ -138,19 +139,28 @@ std::string start_words(const Pattern& pattern, const GeneratedMotion& made) {
     places.push_back(text::fixed(1e3 * made.missed[i].off, 1) + " mm at " +
                      text::fixed(made.missed[i].t, 3) + " s");
   if (places.empty()) return out;
-  out += "  the COG is not where the pattern puts it: it is off by " + text::join(places, ", ");
+  out +=
+      "  the COG is not at its place in the pattern: the distance is " + text::join(places, ", ");
   if (made.missed.size() > named)
     out += " and at " + text::counted(static_cast<long>(made.missed.size() - named), "more key");
   return out + ". No motion through these places was found\n";
 }
 
+// `goal_need` says which goals of VIIP are not possible. It is empty if all of them are possible.
 std::string in_words(const RepairCommand& options, const Task& input, const GeneratedMotion& made,
-                     const std::vector<Mistake>& mistakes, double wall) {
+                     const std::vector<Mistake>& mistakes, const std::string& goal_need,
+                     double wall) {
   const RobotModel& model = input.robot;
   const RepairResult& result = made.repair;
   std::string out = options.pattern + ": " +
-                    (result.partial ? "stopped; the result is partial" : words_of(result.status)) +
+                    (result.partial       ? "stopped; the result is partial"
+                     : !goal_need.empty() ? "the motion is consistent, but a goal is not possible"
+                                          : words_of(result.status)) +
                     "\n";
+  if (!goal_need.empty())
+    return out + "  repair cannot change goals of VIIP, so " + options.out +
+           " is a copy of the pattern, and this copy does not pass the check\n  " + goal_need +
+           "\n";
   if (result.status == RepairStatus::already_consistent)
     return out + "  nothing had to change, so " + options.out + " is a copy of the pattern\n";
   out += steering_words(options, input.pattern);
@@ -205,9 +215,9 @@ std::string in_words(const PassingPace& pace) {
         "up to " +
         text::brief(pace.tried) + " times more slowly\n";
   if (pace.whole > 0)
-    out += "  the pattern passes the check without a repair if it lasts " +
-           text::exact(pace.whole) + " times as long in all (edit retime --scale " +
-           text::exact(pace.whole) + ")\n";
+    out += "  the pattern passes the check without a repair if the whole motion lasts " +
+           text::exact(pace.whole) + " times as long (`ayumi edit retime --scale " +
+           text::exact(pace.whole) + "`)\n";
   return out;
 }
 
@@ -465,7 +475,11 @@ void repair_pattern(Context& context, RepairCommand options) {
                  {fs::path(options.pattern).stem().string() + ", before and after its repair",
                   input.profile},
                  options.plot);
-  context.print(in_words(options, input, made, mistakes, wall) + in_words(values) + in_words(pace) +
+  std::string goal_need;
+  if (result.status == RepairStatus::already_consistent && !input.series.viip.empty())
+    goal_need = judge(input, check_options(input, options.tolerances)).goal_need.text;
+  context.print(in_words(options, input, made, mistakes, goal_need, wall) + in_words(values) +
+                in_words(pace) +
                 (written ? "  written to " + options.out + "\n" + see_words(options, result)
                          : "  nothing written\n"));
   nlohmann::ordered_json json = nlohmann::ordered_json::parse(repair_json(result));
@@ -509,8 +523,9 @@ void add_repair(Command& app, Context& context) {
       ->allow_extra_args(false);
   command
       ->add_option("--weight", options.weights,
-                   "Factor on the cost of moving this joint. With 10, the repair avoids moving the "
-                   "joint (default: the factor in the pattern; 1 if the pattern has none).")
+                   "Weight of this joint: factor on the cost of moving the joint. With 10, the "
+                   "repair avoids moving the joint (default: the weight in the pattern; 1 if the "
+                   "pattern has none).")
       ->type_name("JOINT=FACTOR")
       ->allow_extra_args(false);
   command
@@ -546,9 +561,8 @@ void add_repair(Command& app, Context& context) {
       ->add_option(
           "--safety", options.safety,
           "Weight of safety (distance from the limits) against the size of the change. With a "
-          "larger factor, the repair changes more to gain safety. 0 gives the smallest change that "
-          "passes "
-          "the check (default: the factor in the pattern; 1 if the pattern has none).")
+          "larger weight, the repair changes more to gain safety. 0 gives the smallest change that "
+          "passes the check (default: the weight in the pattern; 1 if the pattern has none).")
       ->check(number_within(RepairOptions::kSafety))
       ->type_name("FACTOR");
   command
@@ -567,7 +581,7 @@ void add_repair(Command& app, Context& context) {
       ->capture_default_str();
   command
       ->add_option("--tolerance", options.tolerances,
-                   "Tolerance of one kind of finding; see ayumi check --tolerances.")
+                   "Tolerance of one kind of finding. `ayumi check --tolerances` lists the kinds.")
       ->type_name("KIND=VALUE")
       ->allow_extra_args(false);
   add_pattern_options(*command, options.input);

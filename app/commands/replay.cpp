@@ -207,7 +207,7 @@ void write_folder(const ReplayCommand& options, const Context& context,
   for (const SimulationLog& log : logs) {
     run.logs[log.plant] = log;
     const std::string unfit = unfit_words(log);
-    if (!unfit.empty()) run.unfit.push_back("in the plant " + log.plant + " " + unfit);
+    if (!unfit.empty()) run.unfit.push_back("in the simulator " + log.plant + ", " + unfit);
   }
   run.sections.emplace_back("replay", json.dump());
   RunOutput output(options.out, context.force);
@@ -296,7 +296,7 @@ void add_replay(Command& app, Context& context) {
       ->required();
   command
       ->add_option("--robot", options->robot,
-                   "Robot that plays the table (default: the one that the table names).")
+                   "Robot that plays the table (default: the robot that the table names).")
       ->type_name("ROBOT");
   command
       ->add_option(

@@ -70,7 +70,7 @@ void add_report(Command& app, Context& context) {
                    "Results file of ayumi push (default: push.json in RUN, if it exists).")
       ->type_name("FILE");
   command->add_option("--robot", options->robot,
-                      "Robot to use in place of the one that the run names.");
+                      "Robot to use in place of the robot that the run names.");
   command->add_option("--max-size", options->max_megabytes, "Largest size of the page [MB].")
       ->capture_default_str();
   command->add_option("--rate", options->report.rate, "Postures per second of the replay.")

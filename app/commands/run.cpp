@@ -249,8 +249,9 @@ void MainJob::write_hoap(const Task& input) {
                                        std::exchange(run.torque, {}), safety);
   folder_.sections.emplace_back("export", safety_json(safe.report));
   std::string text =
-      options_.light ? "no table is written with --light; `ayumi export` makes one from the logs"
-                     : "reference.csv, reference.json";
+      options_.light
+          ? "no table is written with --light. `ayumi export` makes a table from the logs"
+          : "reference.csv, reference.json";
   if (folder_.pushed && !options_.light)
     text += ", reference_pushed.csv (with the reactions to the disturbances)";
   const bool encoders = input.robot.dofs().front().encoder.device > 0;
@@ -277,12 +278,12 @@ void MainJob::write_hoap(const Task& input) {
               ")";
     } catch (const Error& error) {  // the run is whole without a file that cannot hold its table
       if (error.code() != ErrorCode::bad_pattern) throw;
-      text += std::string("; hoap.csv is not written: ") + error.what() +
+      text += std::string(". hoap.csv is not written: ") + error.what() +
               " (`ayumi export` can write the table at another interval)";
     }
   } else if (encoders && !safe.report.safe) {
-    text += (options_.light ? "; the table for the robot is unsafe: "
-                            : "; hoap.csv is not written, because the table is unsafe: ") +
+    text += (options_.light ? ". The table for the robot is unsafe: "
+                            : ". hoap.csv is not written, because the table is unsafe: ") +
             text_of(safe.report.violations.front());
   }
   say("export", text);

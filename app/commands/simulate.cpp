@@ -43,6 +43,16 @@ StreamedRun simulate_pattern_once(const Context& context, const Task& input,
                            log_file(output), {.postures = output.has_value()});
 }
 
+/// The words of a case, with one row for each kind of values.
+std::string case_rows(const std::string& words) {
+  std::string rows = "  ";
+  for (size_t begin = 0, end = 0; end != std::string::npos; begin = end + 2) {
+    end = words.find("; ", begin);
+    rows += (begin == 0 ? "" : "    ") + words.substr(begin, end - begin) + "\n";
+  }
+  return rows;
+}
+
 /// Simulates one case of `certify` with the robot, ground and pushes that it draws.
 StreamedRun simulate_case(const Context& context, const Task& input, const SimulateCommand& options,
                           const std::optional<RunOutput>& output) {
@@ -57,9 +67,7 @@ StreamedRun simulate_case(const Context& context, const Task& input, const Simul
   const RobotUnit robot = task.unit(drawn);
   SimulateOptions simulate_options = task.options(numbers, drawn);
   simulate_options.unit = &robot;
-  std::string values;
-  for (size_t i = 0; i < drawn.size(); ++i)
-    values += (i == 0 ? ": " : ", ") + task.value_text(i, drawn[i]);
+  const std::string values = drawn.empty() ? "" : ": " + task.values_text(drawn);
   return simulate_streamed(context, input, simulate_options, log_file(output),
                            {.postures = output.has_value(),
                             .first_events = {{0, EventKind::study_case,
@@ -102,7 +110,7 @@ void simulate_pattern(Context& context, const SimulateCommand& options) {
                               : simulate_case(context, input, options, output);
   const WrittenLog& log = simulated.log;
   context.print(options.pattern + ": " + outcome_text(log) + "\n");
-  if (options.number >= 0) context.print("  " + log.about.events.front().text + "\n");
+  if (options.number >= 0) context.print(case_rows(log.about.events.front().text));
   nlohmann::ordered_json json = nlohmann::ordered_json::parse(simulation_json(log));
   json["realtime_factor"] = static_cast<double>(log.rows) * log.about.dt / simulated.wall;
   context.exit_code = log.about.result.outcome == Outcome::stands ? 0 : 1;

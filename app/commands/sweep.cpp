@@ -317,8 +317,8 @@ void add_sweep(Command& app, Context& context) {
       "  ayumi sweep study.json -o a.db --shard 1/2\n  ayumi sweep merge a.db b.db -o all.db\n"
       "  ayumi sweep status results.db\n"
       "  ayumi sweep study.json -o results.db --expect 'falls == 0' --junit results.xml\n"
-      "Run again with the same -o to continue: only the cases without a result are run. "
-      "Exit code 1: an expectation is not met, or a case could not be run.");
+      "Run the command again with the same -o to continue. Only the cases without a result are "
+      "then run. Exit code 1: an expectation is not met, or a case could not be run.");
   auto options = std::make_shared<SweepCommand>();
   command->add_option("STUDY", options->study, "Study file that has the key \"sweep\".")
       ->check(file_or_subcommand({"merge", "status"}));
@@ -331,10 +331,9 @@ void add_sweep(Command& app, Context& context) {
   command->add_option("--cases", options->cases, "Run only these cases, for example 0-99,120.")
       ->type_name("LIST");
   command
-      ->add_option(
-          "--case-limit", options->case_limit,
-          "Largest processor time of a case [s]. A case that takes more is recorded as one "
-          "that could not be run.")
+      ->add_option("--case-limit", options->case_limit,
+                   "Largest processor time of a case [s]. A case that takes longer is recorded as "
+                   "a case that could not be run.")
       ->check(number_within(0.01, 1e6).description(""))
       ->type_name("S");
   command
@@ -358,12 +357,13 @@ void add_sweep(Command& app, Context& context) {
   for_slurm(command->add_option("--memory", slurm.memory,
                                 "Memory of a task, passed on to sbatch as --mem."),
             "SIZE");
-  for_slurm(command
-                ->add_option("--sbatch", slurm.further,
-                             "One more option for sbatch, for example --sbatch=--account=lab; may "
-                             "be repeated.")
-                ->allow_extra_args(false),
-            "OPTION");
+  for_slurm(
+      command
+          ->add_option(
+              "--sbatch", slurm.further,
+              "Further option for sbatch, for example --sbatch=--account=lab. May be repeated.")
+          ->allow_extra_args(false),
+      "OPTION");
   for_slurm(
       command
           ->add_option("--chunk", slurm.chunk,
@@ -396,7 +396,7 @@ void add_sweep(Command& app, Context& context) {
   command
       ->add_option(
           "--expect", outputs.expect,
-          "Condition that the results must meet, for example 'falls == 0'; may be repeated.")
+          "Condition that the results must meet, for example 'falls == 0'. May be repeated.")
       ->type_name("TEXT")
       ->allow_extra_args(false);
   command->add_option("--csv", outputs.csv, "Write all cases as CSV.")->type_name("F");
@@ -416,8 +416,8 @@ void add_sweep(Command& app, Context& context) {
   merge->add_option("FILES", merging->files, "Results files of one study.")->required();
   merge
       ->add_option("-o,--out", merging->out,
-                   "New file for the merged results (default: the first file, which receives the "
-                   "results of the others).")
+                   "New file for the merged results (default: no new file; the first of the FILES "
+                   "receives the results of the others).")
       ->type_name("F.db");
   merge->add_flag("--partial", merging->partial, "Merge even if cases are missing.");
   merge->callback([merging, &context] { merge_results(context, *merging); });

@@ -121,11 +121,13 @@ void add_tune(Command& app, Context& context) {
       "Examples:\n  ayumi tune patterns/hoap1_walk.json --profile hoap1-strong\n"
       "  ayumi tune walk.json -o tuned.json\n"
       "  ayumi tune walk.json --tune ka,tau_z --level 1.0 --directions 8 --json\n"
-      "The objective is the sum of two means; smaller is better. The first is a mean over the\n"
-      "pushes. A push counts 10 if the robot falls. Otherwise it counts omega / z times the\n"
-      "integral of |DCM - commanded DCM| from the push to 1.2 s after its end. The second is the\n"
-      "mean of |ZMP - reference ZMP| / z of the pattern without a push. z is the COG height, and\n"
-      "omega is the square root of g / z. Gains that make the loop unstable are not tried.");
+      "The objective is the sum of two means, and a smaller objective is better. The first "
+      "mean\nis over the pushes. The value of a push is 10 if the robot falls. If the robot "
+      "stands, the\nvalue is omega / z times the integral of |DCM - commanded DCM|. The integral "
+      "begins at the\npush and ends 1.2 s after the end of the push. The second mean is the mean "
+      "over time of\n|ZMP - reference ZMP| / z for the pattern without a push. z is the COG "
+      "height, and omega is\nthe square root of g / z. Gains that make the loop unstable are not "
+      "tried.");
   auto options = std::make_shared<TuneCommand>();
   TuneOptions& t = options->tune;
   command->add_option("PATTERN", options->pattern, "Pattern file.")->required();
@@ -139,7 +141,10 @@ void add_tune(Command& app, Context& context) {
                    "Gain at the start of the search (default: the gain of the pattern).")
       ->type_name("GAIN=VALUE")
       ->allow_extra_args(false);
-  command->add_option("--tune", t.gains, "Gains to change (default: ka,q,ks,kd,tau_z,ankle).")
+  command
+      ->add_option(
+          "--tune", t.gains,
+          "Gains to change (default: ka,q,ks,kd,tau_z,ankle). docs/theory.md explains these gains.")
       ->delimiter(',')
       ->type_name("NAMES");
   command

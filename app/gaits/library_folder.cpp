@@ -81,9 +81,11 @@ LibraryFolder::LibraryFolder(const fs::path& folder, const Json& asked, bool rep
   std::error_code error;
   if (is_there(staging_ / kAsked) && !replace) {
     if (read_file(staging_ / kAsked) == text) return;
-    fail(ErrorCode::bad_file, {target_.string()},
-         "this folder holds an unfinished library that was begun with other options; give "
-         "those options to go on, give --force to begin again, or choose another folder");
+    fail(
+        ErrorCode::bad_file, {target_.string()},
+        "this folder contains an unfinished library that was begun with other options. To continue "
+        "the library, give the same options. To begin again, give --force. Otherwise choose "
+        "another folder");
   }
   // A library with the same request is continued, even with --force, unless it was finished and
   // delivered before.

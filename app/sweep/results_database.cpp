@@ -36,7 +36,7 @@ constexpr const char* kSealRow = "rows_sha256";
 /// rest.
 constexpr int kLongestText = 65 << 20;
 constexpr const char* kNoResults =
-    "this file does not hold results of ayumi sweep, or the file is damaged; choose another name";
+    "this file does not contain results of ayumi sweep, or the file is damaged; choose another name";
 /// Time for which a reader waits for a writer [ms]. Chosen: a commit takes a few ms.
 constexpr int kLockPatience = 10000;
 
@@ -383,7 +383,7 @@ void ResultsDatabase::read_head() {
   };
   if (single("PRAGMA application_id") != kApplication)
     fail(ErrorCode::bad_file, {file_.string()},
-         "this file does not hold results of ayumi sweep; choose another name");
+         "this file does not contain results of ayumi sweep; choose another name");
   const long format = single("PRAGMA user_version");
   if (format != kDatabaseFormat)
     fail(ErrorCode::bad_file, {file_.string()},
@@ -452,7 +452,7 @@ void ResultsDatabase::require_study(const SweepHead& asked, const std::string& r
     differs = "the inputs are different";
   if (!differs.empty())
     fail(ErrorCode::bad_file, {file_.string()},
-         "this file holds the results of another study (" + differs + "); " + remedy);
+         "this file contains the results of another study (" + differs + "); " + remedy);
 }
 
 RowSeal ResultsDatabase::seal_without_rows() const { return RowSeal(head_.fingerprint()); }
@@ -610,7 +610,7 @@ long ResultsDatabase::merge(const fs::path& other) {
     if (theirs.head().fingerprint() != head_.fingerprint()) {
       theirs.require_study(head_, "leave this file out");
       fail(ErrorCode::bad_file, {other.string()},
-           "this file holds the results of another study; leave this file out");
+           "this file contains the results of another study; leave this file out");
     }
   }
   execute("ATTACH DATABASE " + sql_text(other.string()) + " AS theirs");

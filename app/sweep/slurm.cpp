@@ -187,7 +187,7 @@ State read_state(const fs::path& folder) {
       state.arrays.push_back({array.at("number"), array.at("job")});
   } catch (const SlurmJson::exception&) {
     fail(ErrorCode::bad_file, {file.string()},
-         "this file does not hold the state of a sweep on Slurm, so the sweep cannot go on; "
+         "this file does not contain the state of a sweep on Slurm, so the sweep cannot continue; "
          "cancel the jobs of the sweep that still run, and remove the folder of this file");
   }
   return state;

@@ -239,7 +239,7 @@ KNOWN = [
             r"^/units.*\"angle\": \"rad\""),
     Mistake("a leg joint with a key", "walk", leg_joint, r"^/keyframes/3.*joint of a leg"),
     Mistake("a foot key 30 mm up, without a COG height", "kick", foot_up,
-            r"(?s)^/keyframes/\d+: the right foot is \d+ mm up( \(and up in [^)]*\))?, and the COG rises|"
+            r"(?s)^/keyframes/\d+: the right foot is lifted by \d+ mm( \(it is also lifted in [^)]*\))?\. The COG rises|"
             r"^/defaults/cog_height.*nearly straight"),
     Mistake("knees nearly straight at lift-off", "jump", straight_knees,
             r"^/keyframes/[23]: the COG height is 0.262 m", ("hoap1",)),
@@ -253,7 +253,7 @@ KNOWN = [
     Mistake("a foothold of 0.9 m", "walk", far_foothold, r"^/phases/3.*(x is 0.9 m|foot lands 0.8\d* m from)"),
     Mistake("footholds exchanged", "walk", exchanged_footholds,
             r"^/phases/3.*/phases/5 were perhaps exchanged"),
-    Mistake("a missing swing", "walk", missing_swing, r"^/phases/3.*swing may be missing"),
+    Mistake("a missing swing", "walk", missing_swing, r"^/phases/3.*swing of the \w+ foot is missing"),
     Mistake("COG height of 2.05 m", "walk", high_cog, r"^/defaults/cog_height.*2.05 m"),
     Mistake("COG height ten times too large", "squat", high_cog,
             r"^/keyframes/\d+.*the COG height is [1-9]\.?\d* m"),
@@ -269,7 +269,7 @@ KNOWN = [
     Mistake("a phase that ends too early", "walk", short_phase, r"^/phases/3.*phase ends at"),
     Mistake("a lift of 0.9 m", "walk", high_lift, r"^/phases/3.*lift.*0.9 m"),
     Mistake("a missing double support", "walk", no_double_support,
-            r"^/phases/4.*\"both\" may be missing"),
+            r"^/phases/4.*\"both\" is missing"),
     Mistake("a key of the foot that stands", "kick", key_of_stance,
             r"^/keyframes/\d.*left foot, which carries"),
     Mistake("a foot key below the ground", "kick", kick_in_ground,

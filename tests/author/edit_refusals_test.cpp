@@ -131,14 +131,15 @@ TEST(AlternateRefuses, WhatIsNoStep) {
   expect_part(message(table, 2, ErrorCode::bad_pattern), "/table: a pattern with a table");
   Pattern keyed = step;
   keyed.keyframes.at(0).feet[0] = Foothold{{0, 0.039, 0}, Vector3d::Zero()};
-  expect_part(message(keyed, 2, ErrorCode::bad_pattern), "the feet have keys; give swings");
+  expect_part(message(keyed, 2, ErrorCode::bad_pattern),
+              "the feet have keys, but only swings can be repeated");
   // The walk turns, so a key with COG x alone cannot be moved to the next step.
   Pattern turning = step;
   turning.phases.at(1).swing->to.rpy.z() = -0.1;
   turning.keyframes.at(1).zmp.reset();
   turning.keyframes.at(1).cog_x = 0.01;
   expect_part(message(turning, 3, ErrorCode::bad_pattern),
-              "a motion that turns needs keys of COG x and y together");
+              "in a motion that turns, a key of the COG must have both x and y");
 }
 
 // The third step repeats the first one. Its keys have the points in the world of the first step's
@@ -211,7 +212,7 @@ TEST(CutRefuses, SamplesThatAreNotThere) {
   const auto count = static_cast<long>(series.samples.size());
   for (const auto& [first, last] : {std::pair<long, long>{-1, 100}, {100, 100}, {0, count}})
     expect_part(message(first, last, ErrorCode::usage), "cannot be cut out of a motion");
-  expect_part(message(0, 1000, ErrorCode::bad_pattern), "at 1 s a foot is in the air");
+  expect_part(message(0, 1000, ErrorCode::bad_pattern), "at 1 s, a foot is in the air");
 }
 
 // The weights at the beginning of the part come from a key before the part. The times of its pushes

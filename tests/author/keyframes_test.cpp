@@ -55,7 +55,7 @@ TEST(KeyEdit, CopiesMovesAndMirrors) {
   EXPECT_EQ(moved.keyframes[1].joints, p.keyframes[1].joints);
   EXPECT_NE(
       error_message([&] { with_key_edited(hoap1(), p, {.at = 0.5, .to = 1}); }, ErrorCode::usage)
-          .find("there is no keyframe at 0.5 s; the times of the keyframes are 0, 0.8, 1.2, 1.6 s"),
+          .find("there is no keyframe at 0.5 s. The times of the keyframes are 0, 0.8, 1.2, 1.6 s"),
       std::string::npos);
   EXPECT_NE(
       error_message([&] { with_key_edited(hoap1(), p, {.at = 0.8, .to = 2.5}); }, ErrorCode::usage)

@@ -22,6 +22,15 @@ TEST(Text, LettersThatWereExchangedAreOneSlip) {
   EXPECT_EQ(text::suggestion(std::string(5'000'000, 'x'), many), "");
 }
 
+TEST(Text, AnAbbreviationIsNearerThanEveryOtherWord) {
+  EXPECT_EQ(text::suggestion("--tol", {"--all", "--tolerances", "--tolerance", "--log"}),
+            "; did you mean '--tolerance'?");
+  EXPECT_EQ(text::suggestion("max", {"map", "max-iterations"}), "; did you mean 'max-iterations'?");
+  EXPECT_EQ(text::suggestion("--a", {"--all", "--against-controller"}), "; did you mean '--all'?")
+      << "too short for an abbreviation";
+  EXPECT_EQ(text::suggestion("--t", {"--threads-of-the-program"}), "");
+}
+
 TEST(PrintableText, KeepsWordsLinesAndTabsOfAnyLanguage) {
   for (const std::string text : {"", "a walk\n\tof 4.3 s, 0.5°", "歩み", "z̈ ≤ g, 𝜃"})
     EXPECT_EQ(text::printable(text), text);

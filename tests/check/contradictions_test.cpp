@@ -116,22 +116,23 @@ TEST(Contradictions, AnotherNumberOfRoundsIsNamed) {
       small(), steps_in_blocks({}), [](Pattern& p) { p = steps_in_blocks({.key_rounds = 2}); },
       "/keyframes/2: the block of keyframes repeats 2 times, but the block of phases /phases/1 "
       "repeats 3 "
-      "times; with \"repeat\": 3 here, the pattern is consistent");
+      "times. With \"repeat\": 3 here, the pattern would be consistent");
 }
 
 TEST(Contradictions, AWrongDurationInABlockIsNamed) {
   expect_named(
       small(), steps_in_blocks({}), [](Pattern& p) { p = steps_in_blocks({.first_swing = 0.048}); },
-      "/phases/1/phases/0: the phase lasts 0.048 s; .* with a duration of 0.48 s, the pattern is "
-      "consistent");
+      "/phases/1/phases/0: the phase lasts 0.048 s. .* With a duration of 0.48 s, the pattern "
+      "would "
+      "be consistent");
 }
 
 TEST(Contradictions, KeyframesThatAreOneRoundLateAreNamed) {
   expect_named(
       small(), steps_in_blocks({}), [](Pattern& p) { p = steps_in_blocks({.late = 1.2}); },
       "/keyframes/2: the repeated keyframes begin at 2.4 s, but the repeated phases begin at 1.2 "
-      "s; "
-      ".* keyframes 1.2 s earlier, the pattern is consistent");
+      "s. "
+      ".* keyframes 1.2 s earlier, the pattern would be consistent");
 }
 
 TEST(Contradictions, MissingKeysOfTheZmpAreNamed) {
@@ -143,7 +144,7 @@ TEST(Contradictions, MissingKeysOfTheZmpAreNamed) {
         });
       },
       "/phases/2: the robot stands on the left foot from 4.8 s to 5.28 s, but no keyframe puts the "
-      "ZMP under this foot; ");
+      "ZMP under this foot. ");
 }
 
 // Two steps to the side, with a key of the ZMP at each end of a swing.
@@ -175,7 +176,7 @@ Pattern side_steps() {
 TEST(Contradictions, AKeyThatIsNotAtTheEndOfItsPhaseIsNamed) {
   expect_named(
       small(), side_steps(), [](Pattern& p) { p.keyframes[3].t = 2.5; },
-      "/keyframes/3: t is 2.5 s, .* with t = 2 s, the pattern is consistent");
+      "/keyframes/3: t is 2.5 s, .* With t = 2 s, the pattern would be consistent");
 }
 
 // The first swing lasts 0.06 s in place of 0.6 s, so all later phases come too early.
@@ -185,8 +186,8 @@ void expect_short_phase_named(const Pattern& walk) {
       [](Pattern& p) {
         for (size_t i = 1; i < p.phases.size(); ++i) p.phases[i].until -= 0.54;
       },
-      "/phases/1: the phase lasts 0.06 s, .* with a duration of 0.6 s .* the pattern is "
-      "consistent");
+      "/phases/1: the phase lasts 0.06 s, .* With a duration of 0.6 s .* the pattern would "
+      "be consistent");
 }
 
 TEST(Contradictions, ADurationThatMovesAllLaterPhasesIsNamed) {
@@ -204,7 +205,7 @@ Pattern late_side_steps() {
 TEST(Contradictions, AKeyLateInAWalkThatIsNotAtTheEndOfItsPhaseIsNamed) {
   expect_named(
       small(), late_side_steps(), [](Pattern& p) { p.keyframes[3].t = 22.5; },
-      "/keyframes/3: t is 22.5 s, .* with t = 22 s, the pattern is consistent");
+      "/keyframes/3: t is 22.5 s, .* With t = 22 s, the pattern would be consistent");
 }
 
 TEST(Contradictions, ADurationLateInAWalkIsNamed) { expect_short_phase_named(late_side_steps()); }
@@ -222,7 +223,7 @@ TEST(Contradictions, KeysOfTheZmpBesideThoseOfTheCogAreNamed) {
   expect_named(
       small(), sway, [](Pattern& p) { p.keyframes[1].zmp = ZmpKey{Under::left}; },
       "/keyframes/1: both the COG \\(/keyframes/0\\) and the ZMP \\(/keyframes/1\\) have keys, .* "
-      "without keys of the ZMP, the pattern is consistent");
+      "Without keys of the ZMP, the pattern would be consistent");
 }
 
 Pattern strong_jump() {
@@ -234,7 +235,7 @@ Pattern strong_jump() {
 TEST(Contradictions, AKeyOfTheForceIsNamed) {
   expect_named(
       small(), strong_jump(), [](Pattern& p) { p.keyframes.front().fz = 32; },
-      "/keyframes/0: f_z is 32 N, .* without keys of f_z, the pattern is consistent");
+      "/keyframes/0: f_z is 32 N, .* Without keys of f_z, the pattern would be consistent");
 }
 
 TEST(Contradictions, AKeyOfTheCogInsideAFlightIsNamed) {
@@ -253,8 +254,8 @@ TEST(Contradictions, AKeyOfTheCogInsideAFlightIsNamed) {
                                         [&](const Keyframe& key) { return key.t > middle; });
         p.keyframes.insert(after, apex);
       },
-      "/keyframes/[0-9]+: the COG has a key at .* inside a flight, .* without keys of the COG "
-      "inside the flight, the pattern is consistent");
+      "/keyframes/[0-9]+: the COG has a key at .* inside a flight, .* Without keys of the COG "
+      "inside the flight, the pattern would be consistent");
 }
 
 // A sole in the air in double support is consistent with its plan, but not with the ground.
@@ -294,9 +295,9 @@ TEST(Contradictions, AKickThatStaysInTheAirIsNamed) {
   expect_named(
       small(), kick, [&](Pattern& p) { p.keyframes[last].feet[1].reset(); },
       "/keyframes/[0-9]+: the right foot carries the robot from .* s on, but its last key before "
-      "this time puts the foot at z = .* m, and the ground there is at z = 0 m; with one more key "
+      "this time puts the foot at z = .* m. The ground there is at z = 0 m. With one more key "
       "at .* "
-      "s that puts the foot back to its old place, the pattern is consistent");
+      "s that puts the foot back to its old place, the pattern would be consistent");
 }
 
 TEST(Contradictions, FootholdsWithXAndYExchangedAreNamed) {
@@ -305,8 +306,8 @@ TEST(Contradictions, FootholdsWithXAndYExchangedAreNamed) {
       [](Pattern& p) {
         std::swap(p.phases[1].swing->to.position.x(), p.phases[1].swing->to.position.y());
       },
-      "/phases/1: the foothold of the left foot is at x = 0.049 m and y = 0 m; .* with the two "
-      "numbers exchanged, the pattern is consistent");
+      "/phases/1: the foothold of the left foot is at x = 0.049 m and y = 0 m. .* With the two "
+      "numbers exchanged, the pattern would be consistent");
 }
 
 TEST(Contradictions, AJointThatIsNoMirrorImageIsNamed) {
@@ -326,8 +327,8 @@ TEST(Contradictions, AJointThatIsNoMirrorImageIsNamed) {
   }
   expect_named(
       tall(), p, [&](Pattern& wrong) { wrong.postures["low"]["l_knee"] = 8 * kDegree; },
-      "/postures/low: l_knee .8 deg. and r_knee .80 deg. are not mirror images; .* with l_knee at "
-      "80 deg, the pattern is consistent");
+      "/postures/low: l_knee .8 deg. and r_knee .80 deg. are not mirror images. .* With l_knee at "
+      "80 deg, the pattern would be consistent");
 }
 
 // Two knee bends, whose keyframes repeat in a block.
@@ -356,9 +357,9 @@ TEST(Contradictions, ATimeSinceTheKeyframeBeforeIsNamed) {
   };
   expect_named(
       tall(), bends(1.2), [&](Pattern& p) { p = bends(0.12); },
-      "/keyframes/1/keyframes/2: the keyframe comes 0.12 s after the keyframe before it; with 1.2 "
+      "/keyframes/1/keyframes/2: the keyframe comes 0.12 s after the keyframe before it. With 1.2 "
       "s "
-      "between these two keyframes, the pattern is consistent");
+      "between these two keyframes, the pattern would be consistent");
 }
 
 // The times make the written motion a thousand times as long as the one that is meant. A file may
@@ -372,7 +373,7 @@ TEST(Contradictions, AWalkWithTimesInMillisecondsIsNamed) {
         for (Phase& phase : p.phases) phase.until *= 1000;
         for (Keyframe& key : p.keyframes) key.t *= 1000;
       },
-      "/phases: .*read as ms, the pattern is consistent");
+      "/phases: .*read as ms, the pattern would be consistent");
 }
 
 Pattern walk_of(int steps) {
@@ -404,7 +405,7 @@ TEST(Contradictions, FeetOnUndeclaredStairsAreTriedTogether) {
   for (const Hypothesis& h : possible.of(Hypotheses::Kind::times)) {
     if (h.rank != Rank::geometry || h.says.written.find("foot's z") == std::string::npos) continue;
     ++of_feet;
-    if (h.says.instead != "with all of them on the declared ground") continue;
+    if (h.says.instead != "with all these heights on the declared ground") continue;
     Pattern level = p;
     h.mend(level);
     for (const Phase& phase : level.phases)

@@ -76,7 +76,7 @@ TEST(WrittenValues, AreFoundAtTheirPlaces) {
            {"/phases/1", "the left foot's x", 0.03, "0.03 m", 0.01},
            {"/phases/1", "the left foot's y", 0.05, "0.05 m", 0.045},
            {"/phases/1", "the left foot's yaw", 0.1, "5.73 deg", 0},
-           {"/phases/3", "the right foot's step forward", 0.02, "0.02 m", 0},
+           {"/phases/3", "\"forward\" of the right foot's step", 0.02, "0.02 m", 0},
            {"/phases/1", "the lift of the swing", 0.03, "0.03 m", 0.02},
            {"/keyframes/0", "the COG's x", 0.012, "0.012 m", any},
            {"/keyframes/0", "the COG's y", 0.02, "0.02 m", 0},

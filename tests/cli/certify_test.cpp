@@ -98,7 +98,7 @@ TEST(CertifyCommand, GoesOnAndRefusesOtherStudies) {
 TEST(CertifyCommand, RefusesFiguresThatNoSimulationGives) {
   const CertifyStudy study;
   for (const auto& [place, value, why] :
-       {std::tuple(3, Json(1e308), "case 0 has the figure 1e+308, which no simulation gives"),
+       {std::tuple(3, Json(1e308), "case 0 has the value 1e+308, which no simulation gives"),
         std::tuple(0, Json(-1), "a case has no number"),
         std::tuple(0, Json(1e308), "a case has no number")}) {
     Json edited = json_of(CertifyStudy::whole());
@@ -122,7 +122,7 @@ TEST(CertifyCommand, RefusesResultsThatWereEdited) {
   edited.replace(edited.find("\"fell\""), 6, "\"stands\"");
   for (const auto& [text, why] :
        {std::pair(edited, "the file has changed since Ayumi wrote it"),
-        std::pair(older.dump(1), "older version of Ayumi wrote it, or it was changed")})
+        std::pair(older.dump(1), "older version of Ayumi wrote the file, or the file was changed")})
     for (const auto& [option, remedy] :
          {std::pair("-o", "replace the file with --force"),
           std::pair("--merge", "run the shard of this file again")}) {
@@ -162,7 +162,7 @@ TEST(CertifyCommand, RefusesResultsThatAreNestedDeeply) {
         R"({"format": "ayumi.certify/1", "study": {"a": )" + deep + R"(}, "cases": []})");
   const Output refused = study.certify({"-o", "cases.json"});
   EXPECT_EQ(refused.exit_code, 3);
-  EXPECT_NE(refused.err.find("cases.json: this file does not hold results of ayumi certify"),
+  EXPECT_NE(refused.err.find("cases.json: this file does not contain results of ayumi certify"),
             std::string::npos)
       << refused.err;
 }

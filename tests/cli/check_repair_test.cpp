@@ -65,8 +65,9 @@ TEST_F(CheckRepair, TheMistakeIsNamedFirst) {
   plant("far.json", R"("to": [0.09, -0.039])", R"("to": [0.9, -0.039])");
   const Output far = ayumi({"check", "far.json", "-q"});
   EXPECT_EQ(far.exit_code, 3);
-  EXPECT_NE(far.err.find("far.json: likely cause: /phases/5: the right foot's x is 0.9 m; with the "
-                         "decimal point one place further left (0.09 m), or with values up to "),
+  EXPECT_NE(far.err.find("far.json: likely cause: /phases/5: the right foot's x is 0.9 m. With the "
+                         "decimal point one place further left (0.09 m), or with a value of at "
+                         "most "),
             std::string::npos)
       << far.err;
   EXPECT_NE(far.err.find("First error: /phases/5: t = "), std::string::npos);
@@ -80,9 +81,10 @@ TEST_F(CheckRepair, TheMistakeIsNamedFirst) {
       "keyframes": [{"t": 0, "posture": "home", "zmp": "center"}, {"t": 1, "zmp": "left"},
                     {"t": 1.8, "zmp": "left"}, {"t": 2.4, "zmp": "center"}]})");
   const std::string step = ayumi({"check", "step.json", "-q"}).err;
-  EXPECT_NE(step.find("step.json: likely cause: /phases/1: the right foot's step forward is 30 m; "
-                      "with the number read in mm (0.03 m), or with values up to 0.0"),
-            std::string::npos)
+  EXPECT_NE(
+      step.find("step.json: likely cause: /phases/1: \"forward\" of the right foot's step is 30 m. "
+                "With the number read in mm (0.03 m), or with a value of at most 0.0"),
+      std::string::npos)
       << step;
   // A value that is written once is named once, however often the block is repeated.
   write(folder / "rounds.json", R"({"format": "ayumi.pattern/1", "robot": "hoap1",
@@ -156,7 +158,7 @@ TEST_F(CheckRepair, APayloadOfTheScenarioIsPartOfTheVerdict) {
   EXPECT_EQ(load.exit_code, 1);
   const std::regex cause(
       "likely cause: /scenario/0: the payload on r_forearm is 3 kg, which is too heavy for "
-      "this motion; the robot can carry up to ([0-9.]+) kg there");
+      "this motion. The robot can carry up to ([0-9.]+) kg there");
   std::smatch words;
   ASSERT_TRUE(std::regex_search(load.out, words, cause)) << load.out;
   EXPECT_NE(load.out.find(" with 3 kg on r_forearm"), std::string::npos) << load.out;
@@ -274,6 +276,11 @@ TEST_F(CheckRepair, HelpOfACommandIsThatOfItsOption) {
   const Output wrong = ayumi({"help", "new", "wlak"});
   EXPECT_EQ(wrong.exit_code, 2);
   EXPECT_EQ(wrong.err, "ayumi: help: ayumi new has no command 'wlak'; did you mean 'walk'?\n");
+  EXPECT_EQ(ayumi({"help", "retime"}).err,
+            "ayumi: help: ayumi has no command 'retime'; did you mean 'edit retime'?\n");
+  EXPECT_EQ(ayumi({"help", "mirror"}).err,
+            "ayumi: help: ayumi has no command 'mirror'; did you mean 'edit mirror' or 'posture "
+            "mirror'?\n");
 }
 
 // The rows of an answer on a terminal of 80 columns.
@@ -317,15 +324,15 @@ TEST_F(ChecksOn80Columns, WhatIsShortenedIsPrintedWithAll) {
       std::regex_search(brief, std::regex("  shortened; `ayumi check --all` prints everything, "
                                           "with \\d+ findings\n$")))
       << brief;
-  EXPECT_EQ(brief.find("sampled from"), std::string::npos) << brief;
+  EXPECT_EQ(brief.find("where each track comes from"), std::string::npos) << brief;
   const std::string all = ayumi({"check", "jump.json", "-q", "--all"}).out;
   EXPECT_EQ(all.find("shortened"), std::string::npos) << all;
-  EXPECT_NE(all.find("sampled from"), std::string::npos) << all;
+  EXPECT_NE(all.find("where each track comes from"), std::string::npos) << all;
   EXPECT_NE(all.find("make the motion of r_knee smoother"), std::string::npos) << all;
   // A line that is not for a terminal is not broken into several.
   ::unsetenv("COLUMNS");
   EXPECT_NE(ayumi({"check", "jump.json", "-q"})
-                .out.find(" mm in ZMP and 0.00 N in f_z; that of the point mass"),
+                .out.find(" mm in ZMP and 0.00 N in f_z. The point mass differs"),
             std::string::npos);
 }
 
@@ -415,16 +422,33 @@ TEST_F(CheckRepair, ATerminalHasColoursUnlessTheyAreRefused) {
 
 TEST_F(CheckRepair, CheckSaysWhereEachTrackComesFrom) {
   const std::string people = ayumi({"check", kWalk, "-q"}).out;
-  EXPECT_NE(people.find("  sampled from\n    joints      legs by inverse kinematics"),
-            std::string::npos)
+  EXPECT_NE(
+      people.find("  where each track comes from\n    joints      legs by inverse kinematics"),
+      std::string::npos)
       << people;
   for (const char* track :
-       {"    base        solved from feet, torso and COG",
-        "    COG         solved from the ZMP keys for the full model", "    ZMP         keys"})
+       {"    base        computed from feet, torso and COG",
+        "    COG         computed from the ZMP keys for the full model", "    ZMP         keys"})
     EXPECT_NE(people.find(track), std::string::npos) << track << "\n" << people;
   const Json json = json_of(ayumi({"check", kWalk, "-q", "--json"}).out);
-  EXPECT_EQ(json.at("sampled_from").at("base"), "solved from feet, torso and COG");
+  EXPECT_EQ(json.at("sampled_from").at("base"), "computed from feet, torso and COG");
   EXPECT_EQ(json.at("sampled_from").at("zmp").get<std::string>().find("keys"), 0u);
+}
+
+// In an earlier version, repair called such a pattern consistent, and check called it inconsistent.
+TEST_F(CheckRepair, AGoalThatIsNotPossibleIsNotCalledConsistent) {
+  std::string text = contents(AYUMI_SOURCE_DIR "/patterns/hoap1_viip_walk.json");
+  text = std::regex_replace(text, std::regex("\"velocity\": *\\[[^\\]]*\\]"),
+                            "\"velocity\": [0.5, 0]");
+  write(folder / "far.json", text);
+  const Output checked = ayumi({"check", "far.json", "-q"});
+  EXPECT_EQ(checked.exit_code, 1) << checked.out;
+  const Output repaired = ayumi({"repair", "far.json", "-o", "r.json", "-q"});
+  EXPECT_EQ(repaired.out.find("already consistent"), std::string::npos) << repaired.out;
+  EXPECT_NE(repaired.out.find("repair cannot change goals of VIIP"), std::string::npos)
+      << repaired.out;
+  EXPECT_NE(repaired.out.find("a COG velocity of 0.5 m/s needs steps of"), std::string::npos)
+      << repaired.out;
 }
 
 TEST_F(CheckRepair, ReasonsOfExportAreListed) {
@@ -436,7 +460,8 @@ TEST_F(CheckRepair, ReasonsOfExportAreListed) {
   const Json json = json_of(checked.out);
   ASSERT_EQ(json.at("export_refuses").size(), 1u) << json.dump();
   const std::string reason = json.at("export_refuses")[0];
-  EXPECT_NE(ayumi({"check", goals}).out.find("`export` refuses the table: " + reason),
+  EXPECT_NE(ayumi({"check", goals})
+                .out.find("`export` would refuse the table of this pattern: " + reason),
             std::string::npos);
   const Output refused = ayumi({"export", goals, "--format", "hoap", "-o", "t.csv"});
   EXPECT_EQ(refused.exit_code, 3);
@@ -653,7 +678,7 @@ TEST_F(CheckRepair, LocksInWords) {
   ASSERT_FALSE(json["obstacles"].empty());
   EXPECT_TRUE(std::any_of(json["obstacles"].begin(), json["obstacles"].end(),
                           [](const Json& o) { return o["kind"] == "support_margin"; }));
-  EXPECT_NE(std::string(json["reasons"][0]).find("this window is locked"), std::string::npos);
+  EXPECT_NE(std::string(json["reasons"][0]).find("This window is locked"), std::string::npos);
   EXPECT_EQ(folder.files(), std::vector<std::string>{"outside.json"});
 }
 

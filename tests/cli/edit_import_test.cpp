@@ -277,7 +277,8 @@ TEST_F(Edit, SaysWhichWordsAreNotMirrored) {
     { "t": 1.5, "joints": { "r_shoulder_roll": -0.3 } } // r_shoulder_roll: out
   ] })");
   const Output said = ayumi({"edit", "mirror", "lift.json", "-o", "m.json"});
-  EXPECT_NE(said.out.find("not mirrored: the words that name a side in lines 2, 6 of lift.json"),
+  EXPECT_NE(said.out.find(
+                "comments and names are not mirrored. They name a side in lines 2, 6 of lift.json"),
             std::string::npos)
       << said.out;
   const auto lines = [&](const std::vector<std::string>& arguments) {

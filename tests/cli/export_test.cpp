@@ -131,7 +131,7 @@ TEST_F(Export, TablesAreAtTheServoPeriodOfTheRobot) {
 // refuses.
 TEST_F(Export, ARunIsWholeWithoutATableThatItsFormatCannotHold) {
   for (const auto& [given, reason] :
-       {std::pair("0.0125", "a HOAP sequence needs a whole "),
+       {std::pair("0.0125", "in a HOAP sequence, the time between two rows is a whole "),
         std::pair("0.004", "the table has a row every 4 ms, but the layout 'HOAP-1' of ")}) {
     const Folder folder;
     fs::copy(AYUMI_SOURCE_DIR "/robots/hoap1", folder.path() / "odd", fs::copy_options::recursive);
@@ -416,7 +416,7 @@ TEST_F(Export, AKeptSequenceThatWasChangedIsRefused) {
   write(folder.path() / "i.sequence.csv", sequence("1", ",R,R,R", "\n", 59));
   const Output output = ayumi({"i.json", "--format", "hoap", "-o", "b.csv"});
   EXPECT_EQ(output.exit_code, 3);
-  EXPECT_NE(output.err.find("no longer the sequence that was imported"), std::string::npos)
+  EXPECT_NE(output.err.find("this file has changed since the import"), std::string::npos)
       << output.err;
   EXPECT_FALSE(fs::exists(folder.path() / "b.csv"));
 }

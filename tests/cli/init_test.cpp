@@ -103,7 +103,7 @@ TEST(Init, FiveJointLegsShuffle) {
     EXPECT_EQ(ayumi(folder, {"check", kind + ".json"}).exit_code, 0) << kind << made.out;
     EXPECT_EQ(ayumi(folder, {"simulate", kind + ".json"}).exit_code, 0) << kind << made.out;
     const std::string cannot =
-        "a leg has only 5 joints, so at some places the leg cannot put the sole level";
+        "a leg has only 5 joints, so it cannot keep the sole level at all places";
     const size_t said = made.out.find(cannot);
     EXPECT_EQ(said != std::string::npos, kind == "walk") << made.out;
     EXPECT_EQ(made.out.rfind(cannot), said);  // it is said only once
@@ -125,7 +125,7 @@ TEST(Init, OpenDuckStandsAfterQuickSteps) {
                      "--lift", "0.005", "--cog-height", "0.205", "--zmp-inwards", "0.009", "-o",
                      "walk.json", "--allow-inconsistent"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
-  EXPECT_NE(made.out.find("; a swinging sole by up to "), std::string::npos) << made.out;
+  EXPECT_NE(made.out.find(". A swinging sole is up to "), std::string::npos) << made.out;
   const Output run = ayumi(folder, {"simulate", "walk.json"});
   EXPECT_EQ(run.exit_code, 0) << run.out << run.err;
   // Slower steps need the angular momentum of the trunk: a pendulum without it sways too far.

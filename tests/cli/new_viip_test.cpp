@@ -29,7 +29,7 @@ TEST_F(NewViip, RefusesWhatTheRobotCannotReach) {
         Case{{"--cog-velocity", "0.06,0,0"}, 3, "is possible"},
         Case{{"--cog-velocity", "0.06,0,0", "--duration", "0"}, 2, "--duration"},
         Case{{"--cog-velocity", "0.01,0,0", "--steps", "2"}, 2, "give exactly one of"},
-        Case{{"--steps", "6", "--velocity", "0.5"}, 3, "the largest step is"},
+        Case{{"--steps", "6", "--velocity", "0.5"}, 3, "The largest step is"},
         Case{{"--steps", "6", "--turn", "300"}, 3, "deg/s"},
         Case{{"--steps", "1", "--velocity", "0.1"}, 2, "--steps 2"},
         Case{{"--steps", "6", "--velocity", "inf"}, 2, "not a finite"}}) {
@@ -63,8 +63,7 @@ TEST_F(NewViip, GoalsThatAreTooStrongForEveryProfileAreRefused) {
     "profiles": [)" + profiles + "] }");
   const Output refused = make({"--robot", "slow.json", "--steps", "6", "--velocity", "0.3"});
   EXPECT_EQ(refused.exit_code, 1) << refused.out << refused.err;
-  EXPECT_NE(refused.out.find("no other profile is strong enough"), std::string::npos)
-      << refused.out;
+  EXPECT_NE(refused.out.find("other profile is strong enough"), std::string::npos) << refused.out;
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "v.json"));
   const Output written =
       make({"--robot", "slow.json", "--steps", "6", "--velocity", "0.3", "--allow-inconsistent"});

@@ -52,7 +52,8 @@ TEST(NewWalk, LegsWithoutMotorsAreNamed) {
   // The soft profiles state servos of their own.
   const Output check = run_program({"check", "-q", "--profile", "hoap1", "w.json"}, folder.path());
   EXPECT_EQ(check.exit_code, 1) << check.err;
-  EXPECT_NE(check.out.find("_knee has no motor (kp of its servo is 0)"), std::string::npos)
+  EXPECT_NE(check.out.find("_knee, but this joint has none (kp of its servo is 0)"),
+            std::string::npos)
       << check.out;
 }
 

@@ -68,7 +68,7 @@ TEST(PushCommand, GoesOnFromItsResultsForAnyNumberOfThreads) {
   const Output other = study.run(study.command, {"--gain", "ka=1"});
   EXPECT_EQ(other.exit_code, 3);
   EXPECT_NE(
-      other.err.find("results.json: this file holds the results of a study with other settings"),
+      other.err.find("results.json: this file contains the results of a study with other settings"),
       std::string::npos)
       << other.err;
 
@@ -82,7 +82,7 @@ TEST(PushCommand, GoesOnFromItsResultsForAnyNumberOfThreads) {
     write(study.folder / "results.json", resealed(edited));
     const Output refused = study.run(study.command);
     EXPECT_EQ(refused.exit_code, 3) << place << refused.out;
-    EXPECT_NE(refused.err.find("this file has a push with numbers that no push has"),
+    EXPECT_NE(refused.err.find("this file contains numbers that are not possible for a push"),
               std::string::npos)
         << place << refused.err;
   }
@@ -100,7 +100,8 @@ TEST(PushCommand, RefusesResultsThatWereEdited) {
   edited.replace(edited.find("\"capped\": false"), 15, "\"capped\": true ");
   for (const auto& [text, why] :
        {std::pair(edited, "the file has changed since Ayumi wrote it"),
-        std::pair(older.dump(1), "older version of Ayumi wrote it, or it was changed")}) {
+        std::pair(older.dump(1),
+                  "older version of Ayumi wrote the file, or the file was changed")}) {
     write(study.folder / "results.json", text);
     const Output refused = study.run(study.command);
     EXPECT_EQ(refused.exit_code, 3) << refused.out;
@@ -119,7 +120,7 @@ TEST(PushCommand, RefusesResultsThatAreNestedDeeply) {
         R"({"format": "ayumi.push/1", "study": {"a": )" + deep + R"(}, "cases": []})");
   const Output refused = study.run(study.command);
   EXPECT_EQ(refused.exit_code, 3);
-  EXPECT_NE(refused.err.find("results.json: this file does not hold results of ayumi push"),
+  EXPECT_NE(refused.err.find("results.json: this file does not contain results of ayumi push"),
             std::string::npos)
       << refused.err;
 }

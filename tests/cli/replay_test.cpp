@@ -137,7 +137,7 @@ TEST_F(Replay, BadTablesLeaveNothing) {
   export_bow("hoap", "h.csv");
   const std::string good = contents(folder / "h.csv");
   const std::vector<std::pair<std::string, std::string>> cases = {
-      {good.substr(0, good.size() / 2 - 20), "columns, but the rows before have 25"},
+      {good.substr(0, good.size() / 2 - 20), "columns, but each row before it has 25"},
       {"", "ayumi"},
       {"1,2,nan" + good.substr(5), "is not a whole number from -32768 to 32767"},
       {"{\"format\": \"ayumi.pattern/1\", \"robot\": \"hoap1\"}", "this is a pattern"},
@@ -225,7 +225,7 @@ TEST_F(Replay, TheNoteBesideASequenceIsRead) {
   const Output replayed = ayumi({"replay", "h.csv", "--robot", "hoap1", "--plant", "ayumi"});
   EXPECT_NE(replayed.out.find("not for a robot, because the run fell at 2 s"), std::string::npos)
       << replayed.out;
-  EXPECT_NE(replayed.out.find("reactions to disturbances: 0.5 N s on cog at 1 s"),
+  EXPECT_NE(replayed.out.find("reactions of the robot to disturbances: 0.5 N s on cog at 1 s"),
             std::string::npos);
   const Output imported = ayumi({"import", "h.csv", "--robot", "hoap1", "-o", "i.json"});
   ASSERT_EQ(imported.exit_code, 0) << imported.err;

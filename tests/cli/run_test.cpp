@@ -202,7 +202,7 @@ TEST_F(Run, ARunThatFellGivesNoTableForARobot) {
   for (const std::string format : {"hoap", "csv", "json"}) {
     const Output refused = exported({}, format);
     EXPECT_EQ(refused.exit_code, 1);
-    EXPECT_EQ(refused.out.find("t: not written, because under its disturbances the run fell at"),
+    EXPECT_EQ(refused.out.find("t: not written, because under its disturbances the robot fell at"),
               0u)
         << refused.out;
   }
@@ -210,7 +210,7 @@ TEST_F(Run, ARunThatFellGivesNoTableForARobot) {
   const Output forced = exported({"--force-unsafe"}, "csv");
   EXPECT_EQ(forced.exit_code, 0);
   EXPECT_FALSE(fs::exists(folder / "t"));  // the name also says that the table is unsafe
-  EXPECT_NE(contents(folder / "t.UNSAFE").find("# unfit: under its disturbances the run fell at"),
+  EXPECT_NE(contents(folder / "t.UNSAFE").find("# unfit: under its disturbances the robot fell at"),
             std::string::npos);
   // The forced table is still marked, and refused as it stands.
   const Output again = ayumi({"export", "t.UNSAFE", "--format", "hoap", "-o", "h.csv", "-q"});
@@ -240,7 +240,8 @@ TEST_F(Run, ExplainSaysWhereTheTracksOfTheRunComeFrom) {
   ASSERT_NO_FATAL_FAILURE(given_run("calm.json"));
   const Output people = ayumi({"explain", "18", "out@0.5"});
   ASSERT_EQ(people.exit_code, 0) << people.err;
-  EXPECT_NE(people.out.find("  sampled from\n    joints "), std::string::npos) << people.out;
+  EXPECT_NE(people.out.find("  where each track comes from\n    joints "), std::string::npos)
+      << people.out;
   const Json json = json_of(ayumi({"explain", "18", "out@0.5", "--json"}).out);
   for (const char* track : {"joints", "base", "cog", "zmp"})
     EXPECT_TRUE(json.at("sampled_from").contains(track)) << track;

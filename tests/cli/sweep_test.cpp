@@ -276,7 +276,7 @@ TEST(SweepCommand, RowsThatWereEditedAreRefused) {
       EXPECT_NE(refused.err.find("odd.db: "), std::string::npos) << refused.err;
       EXPECT_NE(refused.err.find(sql.find("about") == std::string::npos
                                      ? "have changed since ayumi sweep wrote them"
-                                     : "odd.db: this file does not hold results of ayumi sweep"),
+                                     : "odd.db: this file does not contain results of ayumi sweep"),
                 std::string::npos)
           << sql << refused.err;
     }
@@ -393,7 +393,7 @@ TEST(SweepCommand, OneClearLineForBadInput) {
           study.substr(0, study.rfind('}')) + R"(, "uncertainty": )" + text + "}");
   };
   with_uncertainty(R"({"quantities": [{"what": "mass", "uniform": [0.9, 1.1]}]})");
-  expect(s.sweep({"-o", "x.db"}), 3, "the distribution has no source of its numbers");
+  expect(s.sweep({"-o", "x.db"}), 3, "the source of these numbers is missing");
   with_uncertainty(R"({"quantities": [{"what": "mass", "on": "tail", "uniform": [0.9, 1.1],
                        "source": "assumed: a test"}]})");
   expect(s.sweep({"-o", "x.db"}), 3, "this quantity has no effect");
@@ -406,7 +406,7 @@ TEST(SweepCommand, OneClearLineForBadInput) {
   s.write_study(R"({"value.impulse": 0.1})");
   expect(s.sweep({"-o", "good.db"}), 3, "another study (the study is different)");
   ASSERT_EQ(s.sweep({"-o", "other.db"}).exit_code, 0);
-  expect(s.run({"sweep", "merge", "good.db", "other.db"}), 3, "other.db: this file holds");
+  expect(s.run({"sweep", "merge", "good.db", "other.db"}), 3, "other.db: this file contains");
   // A wrong expectation makes no file and replaces none, and commands that only read leave no file
   // behind.
   expect(s.sweep({"-o", "y.db", "--expect", "fals == 0"}), 2, "did you mean 'falls'?");
@@ -458,10 +458,10 @@ TEST(SweepCommand, OnlyItsOwnTablesAreRead) {
        "the table 'cases' is not as"},
       {"CREATE TRIGGER t AFTER INSERT ON cases BEGIN UPDATE cases SET outcome = 'stands'; END",
        "ayumi sweep did not make the trigger 't' of the table 'cases'; remove it"},
-      {"UPDATE axes SET type = 'REAL); CREATE TABLE more (x'", "does not hold results"},
-      {"UPDATE about SET value = '-5' WHERE key = 'cases'", "does not hold results"},
+      {"UPDATE axes SET type = 'REAL); CREATE TABLE more (x'", "does not contain results"},
+      {"UPDATE about SET value = '-5' WHERE key = 'cases'", "does not contain results"},
       {"UPDATE about SET value = '9223372036854775807' WHERE key = 'cases'",
-       "does not hold results"},
+       "does not contain results"},
       {"UPDATE about SET value = zeroblob(70000000) WHERE key = 'name'", "too big"}};
   for (const auto& [sql, message] : refused) {
     changed(sql);

@@ -54,10 +54,10 @@ TEST_F(Usage, HelpFitsTheTerminal) {
   for (std::string line; std::getline(kinds, line);) EXPECT_LE(line.size(), 80u) << line;
   ::unsetenv("COLUMNS");
   const std::string whole = ayumi({"import", "--help"}).out;
-  EXPECT_NE(
-      whole.find("  --order                     The columns are the joints of the robot, in the "
-                 "order of the robot's file.\n"),
-      std::string::npos)
+  EXPECT_NE(whole.find(
+                "  --order                     Take the columns as the joints of the robot, in the "
+                "order of the robot's file.\n"),
+            std::string::npos)
       << whole;
 }
 
@@ -246,6 +246,14 @@ TEST_F(Usage, MistypedWordsAreAnsweredWithTheNearest) {
   const Output option = ayumi({"inspect", "hoap1", "--jsn"});
   EXPECT_EQ(option.exit_code, 2);
   EXPECT_NE(option.err.find("did you mean '--json'?"), std::string::npos) << option.err;
+  const Output subcommand = ayumi({"retime", "w.json"});
+  EXPECT_NE(subcommand.err.find("did you mean 'edit retime'?"), std::string::npos)
+      << subcommand.err;
+  const Output abbreviated = ayumi({"check", "w.json", "--tol", "x"});
+  EXPECT_NE(abbreviated.err.find("did you mean '--tolerance'?"), std::string::npos)
+      << abbreviated.err;
+  const Output deeper = ayumi({"new", "squat", "--dept", "0.1", "-o", "a.json"});
+  EXPECT_NE(deeper.err.find("did you mean '--depth'?"), std::string::npos) << deeper.err;
 }
 
 TEST_F(Usage, MistakesNameTheHelpOfTheirSubcommand) {

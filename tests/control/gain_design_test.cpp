@@ -172,7 +172,7 @@ TEST(GainDesign, SoftServosGetGainsThatAreStable) {
                 std::string::npos)
           << refusal;
     } else {
-      EXPECT_NE(refusal.find("use stiffer servos"), std::string::npos) << refusal;
+      EXPECT_NE(refusal.find("Use stiffer servos"), std::string::npos) << refusal;
     }
   }
   EXPECT_GT(mended, 0);
@@ -221,22 +221,23 @@ TEST(GainDesign, RefusesWishesThatNoGainsFulfil) {
     return wishes;
   };
   EXPECT_EQ(refused(with({-1, 2}, {-1, 3})), "poles: give two real poles or a conjugate pair");
-  EXPECT_EQ(
-      refused(with(-1, 2)),
-      "a pole with the real part 2 is not possible: it must be below 0, because otherwise the "
-      "COG never comes back");
+  EXPECT_EQ(refused(with(-1, 2)),
+            "a pole with the real part 2 is not possible: the real part must be below 0, because "
+            "otherwise the "
+            "COG never comes back");
   EXPECT_EQ(refused(with(3, -1)).substr(0, 29), "a pole with the real part 3 i");
   EXPECT_EQ(test::error_message([] { gains_from_poles(-1, 0, {}); }, ErrorCode::usage),
             "poles: the real part 0 is not below 0, so the COG would never come back");
   GainWishes wishes;
   wishes.absorb = 1;
   EXPECT_EQ(refused(wishes),
-            "a short-term absorption of 1 is not possible: it must be at least 0 and below 1");
+            "a short-term absorption of 1 is not possible: the absorption must be at least 0 and "
+            "below 1");
   wishes.absorb = 0;
   EXPECT_EQ(design_gains(6, wishes, {}).zmp_gain, 0);
   wishes = {};
   wishes.return_time = 0;
-  EXPECT_EQ(refused(wishes), "a return time of 0 is not possible: it must be above 0 s");
+  EXPECT_EQ(refused(wishes), "a return time of 0 is not possible: the time must be above 0 s");
   wishes.return_time = 1e-300;
   EXPECT_EQ(refused(wishes),
             "the wishes need a gain that is not possible: gain ks is 1.667e+299; a gain must be "
@@ -247,10 +248,11 @@ TEST(GainDesign, RefusesWishesThatNoGainsFulfil) {
   EXPECT_EQ(design_gains(6, {}, printed).as_printed, 1);
   wishes = {};
   wishes.zmp_filter = -1;
-  EXPECT_EQ(refused(wishes), "a ZMP filter time of -1 is not possible: it must be above 0 s");
+  EXPECT_EQ(refused(wishes), "a ZMP filter time of -1 is not possible: the time must be above 0 s");
   wishes = {};
   wishes.forget = -0.5;
-  EXPECT_EQ(refused(wishes), "a forgetting time of -0.5 is not possible: it must be at least 0 s");
+  EXPECT_EQ(refused(wishes),
+            "a forgetting time of -0.5 is not possible: the time must be at least 0 s");
   wishes.forget = 0;
   EXPECT_EQ(design_gains(6, wishes, {}).offset_time, 0);
 }

@@ -80,8 +80,9 @@ std::string refused(const JumpGoal& goal) {
 TEST(ViipJump, RefusesWhatIsNoJump) {
   EXPECT_NE(refused(goal_of(0, 0.03, JumpGoal::Release::ref_z)).find("must be above 0"),
             std::string::npos);
-  EXPECT_NE(refused(goal_of(0.03, 0.2, JumpGoal::Release::ref_z)).find("the height at most"),
-            std::string::npos);
+  EXPECT_NE(
+      refused(goal_of(0.03, 0.2, JumpGoal::Release::ref_z)).find("the height must be at most"),
+      std::string::npos);
   EXPECT_NE(
       refused(goal_of(0.02, 0.045, JumpGoal::Release::spring)).find("f_z would never be zero"),
       std::string::npos);

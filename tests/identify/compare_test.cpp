@@ -248,7 +248,8 @@ TEST(Compare, ARecordingOfAnotherTimeIsRefused) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::bad_file);
-    EXPECT_NE(std::string(error.what()).find("The time to compare is 0.000 s"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("The time that can be compared is 0.000 s"),
+              std::string::npos)
         << error.what();
   }
 }

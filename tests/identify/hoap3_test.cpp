@@ -137,8 +137,8 @@ TEST(IdentifyHoap3, RefusesMissingRows) {
       motion.measured.theta = without_rows(whole, gap, missing);
       const std::string said = refusal_of(model, motion);
       EXPECT_NE(said.find(std::to_string(missing) + (missing == 1 ? " row is" : " rows are") +
-                          " missing: from here on, the angles are " + std::to_string(missing) +
-                          " ms earlier than before"),
+                          " missing. From this row on, the angles come " + std::to_string(missing) +
+                          " ms earlier than in the rows before"),
                 std::string::npos)
           << gap << ": " << said;
       // "m.csv: at data row 8001 (8.000 s, one row every 1 ms) ...": the row, with an error of at
@@ -170,7 +170,7 @@ TEST(IdentifyHoap3, RefusesLoadCellsWithMissingRows) {
     motion.sensors.foot_load = without_rows(whole, 8000, missing);
     EXPECT_NE(refusal_of(model, motion)
                   .find("l.csv: the recording has " + std::to_string(17902 - missing) +
-                        " rows, one every 1 ms, which last"),
+                        " rows, one every 1 ms, so it lasts"),
               std::string::npos)
         << refusal_of(model, motion);
   }

@@ -82,15 +82,17 @@ TEST(BrokenRobot, WhatIsNoFile) {
   const TemporaryFolder folder;
   EXPECT_EQ(message_of(folder, "missing.urdf"), "missing.urdf: no such file");
   std::filesystem::create_directory(folder.path() / "folder.urdf");
-  EXPECT_EQ(message_of(folder, "folder.urdf"),
-            "folder.urdf: this folder holds neither a robot.json nor exactly one robot in another "
-            "format; name the file of the robot");
+  EXPECT_EQ(
+      message_of(folder, "folder.urdf"),
+      "folder.urdf: this folder holds neither a robot.json nor exactly one robot file in another "
+      "format; name the file of the robot");
   EXPECT_EQ(message_of(folder, "empty_folder"),
             "robot 'empty_folder': no such file, folder or bundled robot");
   std::filesystem::create_directory(folder.path() / "bare");
-  EXPECT_EQ(message_of(folder, "bare"),
-            "bare: this folder holds neither a robot.json nor exactly one robot in another format; "
-            "name the file of the robot");
+  EXPECT_EQ(
+      message_of(folder, "bare"),
+      "bare: this folder holds neither a robot.json nor exactly one robot file in another format; "
+      "name the file of the robot");
   std::filesystem::create_symlink("loop.urdf", folder.path() / "loop.urdf");
   EXPECT_EQ(message_of(folder, "loop.urdf"),
             "loop.urdf: the file cannot be read (Too many levels of symbolic links)");
@@ -142,12 +144,14 @@ TEST(BrokenRobot, WrongMassesAndNumbers) {
     return "<inertial><mass value=\"" + mass + "\"/><inertia ixx=\"" + ixx +
            "\" ixy=\"0\" ixz=\"0\" iyy=\"0.01\" iyz=\"0\" izz=\"0.01\"/></inertial>";
   };
-  EXPECT_EQ(urdf_error(urdf(link("trunk") + link("l", "") + joint("j", "trunk", "l"))),
-            "r.urdf: link l: it has no <inertial> although a joint moves it; give it a mass and an "
-            "inertia");
-  EXPECT_EQ(with_trunk(inertia("0", "0.01")),
-            "r.urdf: link trunk: its mass is 0 although it is the root of a robot that moves; give "
-            "it a mass and an inertia");
+  EXPECT_EQ(
+      urdf_error(urdf(link("trunk") + link("l", "") + joint("j", "trunk", "l"))),
+      "r.urdf: link l: this link has no <inertial> although a joint moves this link; give the "
+      "link a mass and an inertia");
+  EXPECT_EQ(
+      with_trunk(inertia("0", "0.01")),
+      "r.urdf: link trunk: the mass of this link is 0 although it is the root of a robot that "
+      "moves; give the link a mass and an inertia");
   EXPECT_EQ(with_trunk(inertia("-2", "0.01")),
             "r.urdf: link trunk: mass -2 kg is negative; give the link its mass");
   EXPECT_EQ(with_trunk(inertia("nan", "0.01")),
@@ -236,8 +240,7 @@ TEST(BrokenRobot, WrongMeshes) {
   reader ? setenv("AYUMI_MESH_READER", before.c_str(), 1) : unsetenv("AYUMI_MESH_READER");
   EXPECT_TRUE(
       unread.starts_with("r.urdf: link trunk: mesh trunk.obj cannot be read: the program "
-                         "ayumi-mesh-reader, which reads meshes, was not found; Ayumi "
-                         "looked for no/reader; "))
+                         "ayumi-mesh-reader, which reads meshes, was not found. Install Ayumi"))
       << unread;
   EXPECT_EQ(urdf_error(urdf(link(
                 "trunk", std::string(kInertia) + "<visual><geometry><cone/></geometry></visual>"))),
@@ -271,14 +274,16 @@ TEST(BrokenRobot, WrongSidecars) {
             "robot.json: /profiles: profile 'a': the speed of 'l_hip' is 0; it must be above 0");
   const TemporaryFolder folder;
   folder.write("robot.json", sidecar(""));
-  EXPECT_EQ(message_of(folder, "robot.json"),
-            "robot.json: /urdf: there is no file robot.urdf, and robot.urdf is neither in a folder "
-            "of --robot-path nor in its subfolder urdf/");
+  EXPECT_EQ(
+      message_of(folder, "robot.json"),
+      "robot.json: /urdf: there is no file robot.urdf, and no folder of --robot-path contains "
+      "robot.urdf or urdf/robot.urdf; correct the path");
   folder.write("robot.json", "");
   EXPECT_EQ(message_of(folder, "robot.json"), "robot.json: the file is empty, but JSON is needed");
   folder.write("robot.json", "{ \"format\": \"ayumi.pattern/1\" }");
   EXPECT_EQ(message_of(folder, "robot.json"),
-            "robot.json: /format: this is a pattern, and not a robot; `ayumi check FILE` reads it");
+            "robot.json: /format: this is a pattern, but a robot is needed here; `ayumi check "
+            "FILE` reads such a file");
 }
 
 }  // namespace

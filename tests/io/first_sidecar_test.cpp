@@ -177,13 +177,15 @@ TEST(FirstSidecar, KneesOfOpposedAxesBothComeForward) {
   EXPECT_GT(knee_ahead(model, "r_"), 0.02);
   const Eigen::VectorXd home = model.posture();
   EXPECT_NEAR(home[model.find_dof("l_knee")], -home[model.find_dof("r_knee")], 1e-4);
-  EXPECT_EQ(direction_in_words(model, model.find_dof("l_knee")), "positive bends the knee");
-  EXPECT_EQ(direction_in_words(model, model.find_dof("r_knee")), "positive straightens the knee");
+  EXPECT_EQ(direction_in_words(model, model.find_dof("l_knee")), "a positive angle bends the knee");
+  EXPECT_EQ(direction_in_words(model, model.find_dof("r_knee")),
+            "a positive angle straightens the knee");
   EXPECT_EQ(direction_in_words(model, model.find_dof("l_hip_pitch")),
-            "positive swings the leg back");
+            "a positive angle swings the leg back");
   EXPECT_EQ(direction_in_words(model, model.find_dof("r_ankle_pitch")),
-            "positive turns the toes up");
-  EXPECT_EQ(direction_in_words(model, model.find_dof("l_shoulder")), "positive moves l_arm back");
+            "a positive angle turns the toes up");
+  EXPECT_EQ(direction_in_words(model, model.find_dof("l_shoulder")),
+            "a positive angle moves l_arm back");
 }
 
 // The values are those of a torque-controlled robot of 28 kg: efforts differ from joint to joint.
@@ -278,7 +280,7 @@ TEST(FirstSidecar, NamesTheJointsOfLongLegs) {
     });
   };
   EXPECT_TRUE(says("hip pitch l_hip_pitch, hip yaw l_thigh_turn, knee l_knee"));
-  EXPECT_TRUE(says("Expect that l_thigh_turn, r_thigh_turn move only where postures and keys"));
+  EXPECT_TRUE(says("for these joints if they should move: l_thigh_turn, r_thigh_turn. Six joints"));
 }
 
 // The limits of the arms may be true although those of the legs are placeholders.
@@ -397,7 +399,9 @@ TEST(FirstSidecar, OtherUnitsAreNamed) {
     EXPECT_NE(std::string(error.what()).find("millimetres.urdf: the robot weighs"),
               std::string::npos)
         << error.what();
-    EXPECT_NE(std::string(error.what()).find("divide the lengths by 1000"), std::string::npos)
+    EXPECT_NE(
+        std::string(error.what()).find("if the lengths are in millimetres, divide them by 1000"),
+        std::string::npos)
         << error.what();
   }
   const std::string degrees =
@@ -421,12 +425,13 @@ TEST(FirstSidecar, TheTrunkCarriesBothLegs) {
   std::string text = UrdfBiped{}.text();
   const FirstSidecar plain =
       first_sidecar(folder.write("plain.urdf", text).string(), folder.path());
-  EXPECT_TRUE(says(plain.text, "Guess: the root link, the link that carries both legs"));
+  EXPECT_TRUE(says(plain.text, "Guess: this is the root link, which carries both legs"));
   EXPECT_NE(plain.text.find("\"trunk_link\": \"trunk\""), std::string::npos);
   std::string said;
   for (const std::string& item : plain.to_do) said += item + "\n";
-  EXPECT_NE(said.find("left l_foot, 130 mm long and 70 mm wide, reaching 80 mm ahead of the ankle "
-                      "and 50 mm behind it; right r_foot"),
+  EXPECT_NE(said.find("the left sole (link l_foot) is 130 mm long and 70 mm wide, and reaches 80 "
+                      "mm ahead of the ankle "
+                      "and 50 mm behind the ankle; the right sole (link r_foot)"),
             std::string::npos)
       << said;
   EXPECT_NE(said.find("Left: hip yaw l_hip_yaw, hip roll l_hip_roll, hip pitch l_hip_pitch, knee "
@@ -502,7 +507,7 @@ TEST(FirstSidecar, SaysWhatTheFileDoesNotState) {
   for (const char* const part :
        {"\"package_path\": [\"../packages\"]", "\"control\": { \"dtad\": { \"K_P\": 2.5 } }",
         "\"l_hip_yaw\": \"one_hip_yaw\"", "\"r_knee\": \"two_knee\"",
-        "Placeholder: the URDF states the effort limits of 1000 N m for 14 joints",
+        "Placeholder: the URDF states effort limits of 1000 N m for 14 joints",
         "State the true limits in \"position_limits_deg\"."})
     EXPECT_NE(first.text.find(part), std::string::npos) << part << "\n" << first.text;
   folder.write("robot/robot.json", first.text);
@@ -515,14 +520,14 @@ TEST(FirstSidecar, SaysWhatTheFileDoesNotState) {
       return item.find(part) != std::string::npos;
     });
   };
-  EXPECT_TRUE(listed(first, "Replace the placeholders: effort limits of 1000 N m on 14 joints."));
+  EXPECT_TRUE(listed(first, "Replace the effort limits of 1000 N m on 14 joints, because"));
   // Limits of 0 are not stated.
   const UrdfBiped bare{.effort = [](const std::string&) { return 0; }, .speed = 0};
   const FirstSidecar unlimited =
       first_sidecar(folder.write("bare.urdf", bare.text()).string(), folder.path() / "bare");
   EXPECT_TRUE(listed(unlimited,
-                     "the robot's file states no speed limit for 14 joints, and no torque limit "
-                     "for 14 joints; without them, check cannot say"));
+                     "The robot's file states no speed limit for 14 joints, and no torque limit "
+                     "for 14 joints. Without these limits, `ayumi check` cannot say"));
 }
 
 TEST(FirstSidecar, RefusesARobotThatHasOne) {
@@ -557,8 +562,8 @@ TEST(FirstSidecar, TheInertiasOfFeetGiveTheSolesWhereTheMeshesAreMissing) {
   const std::string file = folder.write("r.urdf", biped_without_meshes()).string();
   const FirstSidecar sidecar = first_sidecar(file, folder.path() / "r");
   ASSERT_EQ(sidecar.robot.soles.size(), 2u);
-  EXPECT_TRUE(has_item(sidecar, "Measure the soles and state them: the feet have no shapes"));
-  EXPECT_TRUE(says(sidecar.text, "the feet have no shapes, so they are taken for boxes"));
+  EXPECT_TRUE(has_item(sidecar, "Measure the soles and state them. The feet have no shapes"));
+  EXPECT_TRUE(says(sidecar.text, "the feet have no shapes, so Ayumi takes each foot as a box"));
   const RobotModel model(load_robot_description(file));
   for (const Side side : {Side::left, Side::right}) {
     const Sole &found = model.sole(side), &real = whole.sole(side);
@@ -570,7 +575,7 @@ TEST(FirstSidecar, TheInertiasOfFeetGiveTheSolesWhereTheMeshesAreMissing) {
   EXPECT_TRUE(std::any_of(sidecar.to_do.begin(), sidecar.to_do.end(), [](const std::string& item) {
     return item.find("6 meshes are missing and left out: ") != std::string::npos &&
            item.find("r_foot.stl") == std::string::npos &&
-           item.find(" and 3 more, which `ayumi inspect` lists; ") != std::string::npos;
+           item.find(" and 3 more (`ayumi inspect` lists all of them). ") != std::string::npos;
   }));
   EXPECT_TRUE(std::any_of(model.description().assumptions.begin(),
                           model.description().assumptions.end(), [](const std::string& all) {
@@ -593,10 +598,10 @@ TEST(FirstSidecar, FeetWithoutMeshesAndUsableInertiasHaveSmallSoles) {
   }
   const FirstSidecar sidecar =
       first_sidecar(folder.write("r.urdf", text).string(), folder.path() / "r");
-  EXPECT_TRUE(has_item(sidecar, "Measure the soles and state them: the feet have no shapes"));
-  EXPECT_TRUE(
-      says(sidecar.text, "a link without shapes has that of a sphere with the density of water"));
-  EXPECT_TRUE(says(sidecar.text, "or those under \"links\" where this sidecar states them"));
+  EXPECT_TRUE(has_item(sidecar, "Measure the soles and state them. The feet have no shapes"));
+  EXPECT_TRUE(says(sidecar.text,
+                   "A link without shapes has the inertia of a sphere with the density of water"));
+  EXPECT_TRUE(says(sidecar.text, "from \"links\" if this sidecar states them"));
   const RobotModel model(sidecar.robot);
   for (const Side side : {Side::left, Side::right}) {
     ASSERT_EQ(model.sole(side).polygon.size(), 4u);

@@ -30,7 +30,9 @@ std::string refusal(const std::string& text, ImportOptions options = {}) {
     // The end of the message tells how the format was recognized.
     const std::string message = error.what();
     return message.substr(
-        0, message.find(" (the file was read as table with a head row, because the first row"));
+        0, message.find(
+               ". Ayumi read the file in the format 'csv' (table with a head row), because the "
+               "first row"));
   }
   return "read";
 }
@@ -104,8 +106,8 @@ TEST(ForeignTable, IsReadWithTheMarksOfOtherPrograms) {
 TEST(ForeignTable, AColumnWithoutANameThatDoesNotCountTheRowsIsRefused) {
   const std::string lost =
       "a.csv:2: the first cell is empty, but only a column that counts the rows (0, 1, 2, ... or "
-      "1, 2, 3, ...) needs no name; write t into this cell if the column has the times, or remove "
-      "the column";
+      "1, 2, 3, ...) needs no name. If the column has the times, write t into this cell; otherwise "
+      "remove the column";
   const std::string times = "# of pandas\n" + table(",l_elbow,r_knee", ',', '.', 1, 1);
   EXPECT_EQ(refusal(times), lost);
   ImportOptions options;
@@ -136,8 +138,8 @@ TEST(ForeignTable, AnAssumedUnitIsSaid) {
             "units: radians (assumed; --unit deg changes this)");
   EXPECT_EQ(units_of(table("t,l_elbow,r_knee", ',', '.', 1, 0.05)),
             "units: radians (assumed). In radians, 2 joints (r_knee, l_elbow) exceed position or "
-            "speed limits; in degrees, none of them does. If the angles are in degrees, give "
-            "--unit deg");
+            "speed limits. In degrees, these joints stay inside their limits. If the angles are in "
+            "degrees, give --unit deg");
   EXPECT_EQ(units_of(table("t,l_elbow,r_knee", ',', '.', 1, 0.05), {.degrees = true}),
             "units: degrees, as --unit says");
   EXPECT_EQ(units_of(table("t,l_elbow[deg],r_knee[rad]", ',', '.', 1, 0.001)), "");
@@ -146,8 +148,8 @@ TEST(ForeignTable, AnAssumedUnitIsSaid) {
             "units: radians for r_knee (assumed; --unit deg changes this)");
   EXPECT_EQ(units_of(table("t,l_elbow[deg],r_knee", ',', '.', 1, 0.05)),
             "units: radians for r_knee (assumed). In radians, 1 joint (r_knee) exceeds position "
-            "or speed limits; in degrees, it does not. If the angles are in degrees, give "
-            "--unit deg");
+            "or speed limits. In degrees, this joint stays inside its limits. If the angles are in "
+            "degrees, give --unit deg");
   EXPECT_EQ(units_of(table("t,l_elbow[deg],r_knee", ',', '.', 1, 0.05), {.degrees = true}),
             "units: degrees for r_knee, as --unit says");
 }
@@ -163,7 +165,7 @@ TEST(ForeignTable, RoughAnglesAreSaid) {
       if (line.find("the angles are rough") != std::string::npos) return line;
     return std::string();
   };
-  EXPECT_NE(rough(1e3, {}).find("l_knee has "), std::string::npos);
+  EXPECT_NE(rough(1e3, {}).find("the acceleration of l_knee changes "), std::string::npos);
   EXPECT_NE(rough(1e3, {}).find("--smooth DEG"), std::string::npos);
   EXPECT_EQ(rough(1e6, {}), "");
   ImportOptions smooth;
@@ -226,10 +228,11 @@ TEST(ForeignTable, ColumnsOfTheRootAreReadByTheirNames) {
                             "pelvis_x,pelvis_y,pelvis_z,torso_qw,torso_qx,torso_qy,torso_qz",
                             "root_x,root_y,root_z,a,b,c,d"})
     EXPECT_NE(refusal(rooted(names)).find("of its 8 joints only l_elbow"), std::string::npos);
-  EXPECT_EQ(refusal("t,root_x,root_y,root_z,pelvis_x,pelvis_y,pelvis_z,qw,qx,qy,qz\n"
-                    "0,0,0,0,0,0,0,1,0,0,0\n0.1,0,0,0,0,0,0,1,0,0,0\n"),
-            "a.csv: the motion of the root may be in the columns of 'pelvis_x' and 'root_x'; keep "
-            "one of these groups");
+  EXPECT_EQ(
+      refusal("t,root_x,root_y,root_z,pelvis_x,pelvis_y,pelvis_z,qw,qx,qy,qz\n"
+              "0,0,0,0,0,0,0,1,0,0,0\n0.1,0,0,0,0,0,0,1,0,0,0\n"),
+      "a.csv: several groups of columns can be the motion of the root. These groups begin with "
+      "the columns 'pelvis_x' and 'root_x'; keep one of these groups");
 }
 
 // Only one column of times counts; the others are left out.
@@ -251,12 +254,13 @@ TEST(ForeignTable, TheFirstColumnOfTimesCounts) {
 
 TEST(ForeignTable, MistakesAreOneLine) {
   const std::string good = table("t,l_elbow,r_knee", ',', '.', 1, 1);
-  EXPECT_EQ(refusal(good),
-            "a.csv: column 'l_elbow' reaches 19 rad, but no joint can turn so far; give "
-            "--unit deg if the angles are in degrees");
+  EXPECT_EQ(
+      refusal(good),
+      "a.csv: column 'l_elbow' reaches 19 rad, but no joint with limits can turn so far; give "
+      "--unit deg if the angles are in degrees");
   EXPECT_EQ(refusal("\xFF\xFEt\0,\0"), "a.csv:1: the file is UTF-16 text; save the file as UTF-8");
   EXPECT_EQ(refusal("t l_elbow r_knee\n0 0 0\n1 0 0\n"),
-            "a.csv: only blanks separate the columns; use commas, semicolons or tabs");
+            "a.csv: the columns are separated by blanks; use commas, semicolons or tabs");
   EXPECT_EQ(refusal("t,l_elbow\n0,0\n0.2,0\n0.1,0\n"),
             "a.csv: data row 3: time 0.1 s does not come after 0.2 s of the row before; times must "
             "increase");

@@ -94,8 +94,9 @@ TEST(Hoap, SaysWhatIsWrong) {
   EXPECT_NE(hoap_error("1,2,0,0,R,R,R\n")
                 .find("s.csv:1: the row has 7 columns, but sequences of this robot have 8"),
             std::string::npos);
-  EXPECT_NE(hoap_error("1,4,0,0,0,R,R,R\n").find("expected an interval, then the code 2"),
-            std::string::npos);
+  EXPECT_NE(
+      hoap_error("1,4,0,0,0,R,R,R\n").find("a row must begin with an interval [ms] and a code"),
+      std::string::npos);
   EXPECT_NE(hoap_error("1,2,0,0,1.5,R,R,R\n")
                 .find("column 5: '1.5' is not a whole number from -32768 to 32767"),
             std::string::npos);
@@ -105,11 +106,11 @@ TEST(Hoap, SaysWhatIsWrong) {
   EXPECT_NE(hoap_error("0,2,0,0,0,R,R,R\n").find("'0' is not an interval"), std::string::npos);
   // The file is cut off in its second row.
   EXPECT_NE(hoap_error("1,2,0,0,0,R,R,R\n1,2,0,0,\n")
-                .find("s.csv:2: the row has 5 columns, but the rows"),
+                .find("s.csv:2: the row has 5 columns, but each row before it has 8"),
             std::string::npos);
   EXPECT_NE(hoap_error("1,2,0,0,0,R,R,R\n1,2,0,0,0,R,R,")
-                .find("s.csv:2: the row ends with ',R,R,', but the first row with ',R,R,R'; the "
-                      "file may be truncated"),
+                .find("s.csv:2: the row ends with ',R,R,', but the first row ends with ',R,R,R'. "
+                      "The file may be truncated"),
             std::string::npos);
 }
 
@@ -117,11 +118,12 @@ TEST(Hoap, NeedsEncodersAndWholeMilliseconds) {
   RobotDescription description = test::bus_description();
   description.encoders["c"].device = 1;
   const std::string error = test::error_message([&] { hoap_csv(RobotModel(description), sway()); });
-  EXPECT_NE(error.find("has encoder device 1; the layout"), std::string::npos) << error;
+  EXPECT_NE(error.find("has encoder device 1. For the layout"), std::string::npos) << error;
   description.encoders.clear();
   const std::string bare = test::error_message(
       [&] { parse_hoap("1,2,0,0,0,R,R,R\n", "s.csv", RobotModel(description)); });
-  EXPECT_NE(bare.find("this robot has no encoders; name the robot of the file"), std::string::npos)
+  EXPECT_NE(bare.find("this robot has no encoders. With --robot, name the robot"),
+            std::string::npos)
       << bare;
   ReferenceTrajectory table = sway();
   table.dt = 0.0015;
@@ -227,15 +229,14 @@ TEST(Hoap, ZerosAreNoRecordingAndJumpsAreNamed) {
   }
   const std::string error = test::error_message([&] { read_motion_rows(zeros, "z.csv", hoap1()); });
   EXPECT_TRUE(
-      error.starts_with("z.csv: every value of every motor is 0, so nothing was recorded; record "
-                        "again (the file was read as HOAP sequence, "))
+      error.starts_with("z.csv: all values of all motors are 0, so nothing was recorded; record "
+                        "again. Ayumi read the file in the format 'hoap' (HOAP sequence), "))
       << error;
   const ImportedMotion motion = read_motion_rows(jump, "j.csv", hoap1());
   ASSERT_FALSE(motion.filled.empty());
   EXPECT_EQ(motion.filled.front(),
-            "device 1 jumps by 100 counts/ms before row 6, but motor boards allow at most 57 "
-            "counts/ms; rows may be "
-            "missing there");
+            "at row 6, the target of device 1 changes by 100 counts/ms from the row before, but "
+            "motor boards allow at most 57 counts/ms. Rows may be missing before this row");
 }
 
 TEST(Hoap, ReadsRealSequences) {

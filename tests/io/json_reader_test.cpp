@@ -34,7 +34,8 @@ TEST(JsonReader, NamesLineAndColumnOfASyntaxError) {
 // A file name or a message would end there.
 TEST(JsonReader, TheCharacterZeroIsRefused) {
   for (const std::string text : {"{\"a\":\n \"b\\u0000c\"}", "{\n  \"a\\u0000\": 1}"})
-    EXPECT_NE(parse_error(text).find("a text has the character U+0000"), std::string::npos) << text;
+    EXPECT_NE(parse_error(text).find("this text has the character U+0000"), std::string::npos)
+        << text;
   EXPECT_TRUE(parse_error("{\"a\":\n \"b\\u0000c\"}").starts_with("f.json:2:"));
   EXPECT_TRUE(parse_error("{\"\\\\u0000\": 1,\n \"b\": \"\\u0000\"}").starts_with("f.json:2:"));
 }
@@ -46,7 +47,7 @@ TEST(JsonReader, NamesASlipInWordsAboutTheText) {
       {"{\n \"t\": 0.5\n \"zmp\": 1}", "f.json:2:10: a comma is missing after 0.5"},
       {"{\n \"zmp\": \"left\" // a\n \"t\": 1}", "f.json:2:15: a comma is missing after \"left\""},
       {"{\"t\": 0.5,\n}", "f.json:1:10: this comma is followed by a }; remove the comma"},
-      {"[1,, 2]", "f.json:1:4: two commas stand in a row; remove one"},
+      {"[1,, 2]", "f.json:1:4: there are two commas in a row; remove one"},
       {"{\"a\": 1; \"b\": 2}", "f.json:1:8: a comma is meant here, not a semicolon"},
       {"{t: 0.5}", "f.json:1:2: the name t needs quotation marks: \"t\""},
       {"{\"zmp\": left}", "f.json:1:9: the word left needs quotation marks: \"left\""},
@@ -82,7 +83,7 @@ TEST(JsonReader, NamesASlipInWordsAboutTheText) {
       {"{\"a\": [\n1\n\"b\": 2}", "f.json:2:2: the [ of line 1 is not closed: a ] and a comma"},
       {"{\"a\": [1}", "f.json:1:9: the [ of line 1 is not closed before this }"},
       {"{\"a\": 1}}",
-       "f.json:1:9: this } closes nothing, because all brackets are closed; remove it"},
+       "f.json:1:9: this } closes nothing, because all brackets are closed; remove this bracket"},
       {"{\n  \"a\": {\n  \"b\": 1\n}", "f.json:2:8: the text ends too early: a } is missing"},
       {"{\"a\": [\n1",
        "f.json:2:2: the text ends too early; missing: ] for the [ of line 1, then }"},
@@ -220,13 +221,12 @@ TEST(DocumentFormat, SaysWhatTheFileIs) {
         [&] { require_format(root_of(document, "mine.json", ErrorCode::bad_file), wanted); },
         ErrorCode::bad_file);
   };
-  EXPECT_EQ(
-      message("ayumi.postures/1", "ayumi.robot/1"),
-      "mine.json: /format: this is a library of postures, and not a robot; `ayumi posture list "
-      "FILE` reads it");
-  EXPECT_EQ(
-      message("ayumi.robot/1", "ayumi.pattern/1"),
-      "mine.json: /format: this is a robot, and not a pattern; `ayumi inspect FILE` reads it");
+  EXPECT_EQ(message("ayumi.postures/1", "ayumi.robot/1"),
+            "mine.json: /format: this is a library of postures, but a robot is needed here; `ayumi "
+            "posture list FILE` reads such a file");
+  EXPECT_EQ(message("ayumi.robot/1", "ayumi.pattern/1"),
+            "mine.json: /format: this is a robot, but a pattern is needed here; `ayumi inspect "
+            "FILE` reads such a file");
   EXPECT_EQ(message("ayumi.pattern/2", "ayumi.pattern/1"),
             "mine.json: /format: 'ayumi.pattern/2' cannot be read; this version of Ayumi reads "
             "'ayumi.pattern/1'");

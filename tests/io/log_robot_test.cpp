@@ -42,7 +42,7 @@ TEST(LogRobot, FitsWithAndWithoutPayloads) {
 
 TEST(LogRobot, PosturesOfAnotherRobotAreRefused) {
   const SimulationLog log = standing();
-  const std::string differs = "' differs from the COG in the log at the same posture";
+  const std::string differs = "' differs from the COG in the log by ";
   const auto changed = [&](const auto& change) {
     SimulationLog other = log;
     change(other.samples[300]);
@@ -55,7 +55,8 @@ TEST(LogRobot, PosturesOfAnotherRobotAreRefused) {
         changed([&](SimulationSample& s) { s.state.theta[a] = 1e300; }),
         changed([](SimulationSample& s) { s.state.base.position.x() = 1e300; }),
         changed([](SimulationSample& s) { s.cog.x() += 1e-5; })}) {
-    EXPECT_EQ(message.find("run: at t = 0.300 s the COG of robot '"), 0u) << message;
+    EXPECT_EQ(message.find("run: with the posture at 0.300 s, the COG of the robot '"), 0u)
+        << message;
     EXPECT_NE(message.find(differs), std::string::npos) << message;
   }
   // The load is in the samples but not in the scenario, or the other way round.
@@ -72,7 +73,7 @@ TEST(LogRobot, PosturesOfAnotherRobotAreRefused) {
 TEST(LogRobot, OtherJointsAreRefused) {
   SimulationLog log = standing();
   std::swap(log.joints[0], log.joints[1]);
-  EXPECT_EQ(refused(log).find("run: the joints of the run ("), 0u);
+  EXPECT_EQ(refused(log).find("run: the run has the joints "), 0u);
   EXPECT_EQ(test::error_message([&] { require_postures_of(hoap1(), log, "run"); }).find("run: "),
             0u);
 }
@@ -89,8 +90,8 @@ TEST(LogRobot, AttitudesAreRotations) {
   SimulationLog other = log;
   other.samples[7].state.base.attitude.coeffs().setZero();
   EXPECT_EQ(refused(other),
-            "run: at t = 0.007 s the quaternion of an attitude has the length 0 and not 1; the log "
-            "has changed; run the pattern again");
+            "run: at t = 0.007 s the quaternion of an attitude has the length 0, but 1 is needed. "
+            "The log has changed since the run; run the pattern again");
 }
 
 // The masses of this robot are in no file.

@@ -119,11 +119,11 @@ INSTANTIATE_TEST_SUITE_P(
                         "<library_nodes><node id=\"a\"><instance_node url=\"#b\"/></node>"
                         "<node id=\"b\"><instance_node url=\"#a\"/></node></library_nodes>",
                         "<instance_node url=\"#a\"/>"),
-                "the mesh reader crashed on this file|more memory"},
+                "the program that reads meshes crashed on this file|more memory"},
         Hostile{"deep.dae",
                 collada("stride=\"3\"", "",
                         repeated("<node>", 200000) + kInstance + repeated("</node>", 200000)),
-                "the mesh reader crashed on this file|more memory"},
+                "the program that reads meshes crashed on this file|more memory"},
         Hostile{"bomb.dae", collada("stride=\"3\"", bomb(), "<instance_node url=\"#a0\"/>"),
                 "more memory than the 256 MiB|crashed"},
         Hostile{"tiny_1.glb", glb(1), "more memory than the 256 MiB|cannot be read|crashed"},
@@ -220,20 +220,24 @@ class FailingMeshReader : public testing::Test {
 
 TEST_F(FailingMeshReader, EndsBeforeItBegins) {
   const std::string text = message("exit 7\n");
-  EXPECT_NE(text.find("reader: the mesh reader ended before it was ready (exit code 7)"),
-            std::string::npos)
+  EXPECT_NE(
+      text.find(
+          "reader: this program, which reads meshes, ended before it was ready (exit code 7)"),
+      std::string::npos)
       << text;
 }
 
 TEST_F(FailingMeshReader, IsAnotherProgram) {
   const std::string text = message("printf 'Hello, I am not the reader of meshes' >&0\n");
-  EXPECT_NE(text.find("this is not the mesh reader of this version of Ayumi"), std::string::npos)
+  EXPECT_NE(text.find("this program, which reads meshes, belongs to another version of Ayumi"),
+            std::string::npos)
       << text;
 }
 
 TEST_F(FailingMeshReader, Crashes) {
   const std::string text = message(hello + "kill -SEGV $$\n");
-  EXPECT_NE(text.find("t.obj: the mesh reader crashed on this file (signal 11"), std::string::npos)
+  EXPECT_NE(text.find("t.obj: the program that reads meshes crashed on this file (signal 11"),
+            std::string::npos)
       << text;
 }
 
@@ -250,7 +254,7 @@ TEST_F(FailingMeshReader, NeverAnswers) {
 TEST_F(FailingMeshReader, AnswersWithTooMuch) {
   const std::string mesh = "\\005", huge = "\\000\\000\\000\\000\\377\\377\\000\\000";
   const std::string text = message(hello + head(mesh, huge) + "exec /bin/sleep 60\n");
-  EXPECT_NE(text.find("but at most 1073741824 are accepted"), std::string::npos) << text;
+  EXPECT_NE(text.find("but at most 1073741824 bytes are accepted"), std::string::npos) << text;
 }
 
 TEST_F(FailingMeshReader, AnswersWithNonsense) {
@@ -258,7 +262,8 @@ TEST_F(FailingMeshReader, AnswersWithNonsense) {
   const std::string text =
       message(hello + head(mesh, eight) +
               "printf '\\377\\377\\377\\377\\377\\000\\000\\000' >&0\n" + "exec /bin/sleep 60\n");
-  EXPECT_NE(text.find("t.obj: the mesh reader's answer is not valid (part 0: more parts than "
+  EXPECT_NE(text.find("t.obj: the answer of the program that reads meshes is not valid (part 0: "
+                      "more parts than "
                       "bytes)"),
             std::string::npos)
       << text;

@@ -256,45 +256,44 @@ TEST(MotionFormats, ForeignFilesAreNamed) {
                 .find("this is a text without rows of numbers"),
             std::string::npos);
   // Numbers under words that are separated by blanks are a table with wrong separators.
-  EXPECT_NE(refusal_of("time l_knee r_knee\n0 0.1 0.2\n").find("only blanks separate"),
-            std::string::npos);
+  EXPECT_NE(
+      refusal_of("time l_knee r_knee\n0 0.1 0.2\n").find("the columns are separated by blanks"),
+      std::string::npos);
   for (const std::string& name : read_format_names())
     EXPECT_NE(refusal_of("???").find(name), std::string::npos) << name;
-}
-
-// The end of the message about a file whose format was recognized.
-std::string told(const std::string& message) {
-  EXPECT_TRUE(message.ends_with(')')) << message;
-  return message.substr(0, message.size() - 1);
 }
 
 TEST(MotionFormats, MistakesNameFileLineAndFormat) {
   const std::string head = "#WEBOTS_MOTION,V1.0,l_knee,r_knee\n";
   const std::string webots =
-      " (the file was read as Webots .motion, because the first line begins with #WEBOTS_MOTION";
-  EXPECT_EQ(told(refusal_of(head + "00:00:000,a,0,0\n00:00:040,b,0\n")),
+      ". Ayumi read the file in the format 'webots' (Webots .motion), because the first line "
+      "begins "
+      "with #WEBOTS_MOTION";
+  EXPECT_EQ(refusal_of(head + "00:00:000,a,0,0\n00:00:040,b,0\n"),
             "m.dat:3: the row has 3 cells, but the head row needs 4 (2 joints)" + webots);
-  EXPECT_EQ(told(refusal_of(head + "00:00:000,a,0,0\n00:00:040,b,0")),
+  EXPECT_EQ(refusal_of(head + "00:00:000,a,0,0\n00:00:040,b,0"),
             "m.dat:3: the row has 3 cells, but the head row needs 4 (2 joints); the file may be "
             "truncated" +
                 webots);
-  EXPECT_EQ(told(refusal_of(head + "00:00:000,a,0,nan\n")),
+  EXPECT_EQ(refusal_of(head + "00:00:000,a,0,nan\n"),
             "m.dat:2: column r_knee: 'nan' is not a finite number" + webots);
-  EXPECT_EQ(told(refusal_of("#WEBOTS_MOTION,V3.0,l_knee\n")),
+  EXPECT_EQ(refusal_of("#WEBOTS_MOTION,V3.0,l_knee\n"),
             "m.dat:1: version 'V3.0' is unknown; Ayumi reads V1.0 and V1.1" + webots);
-  EXPECT_EQ(told(refusal_of("time,0,1\nl_knee,0,1\nr_knee,0\n")),
-            "m.dat:3: the row of 'r_knee' has 1 value, but the first row has 2 times (the file was "
-            "read as CSV "
-            "with a row "
-            "for each joint, because the first row has times, so each further row is a joint");
-  EXPECT_EQ(told(refusal_of("0.02 3 ( 1 2 )\n")),
-            "m.dat:1: the brackets hold 2 values, but n is 3 (the file was read as mi-lib .zvs, "
-            "because the "
-            "rows have the form `dt n ( values )`");
-  EXPECT_EQ(told(refusal_of("0.02 2 ( 1 2 )\n0.02 2 ( 1 2\n")),
-            "m.dat:2: the bracket ( is not closed, so the row was cut; copy the file again (the "
-            "file was read "
-            "as mi-lib .zvs, because the rows have the form `dt n ( values )`");
+  EXPECT_EQ(
+      refusal_of("time,0,1\nl_knee,0,1\nr_knee,0\n"),
+      "m.dat:3: the row of 'r_knee' has 1 value, but the first row has 2 times. Ayumi read the "
+      "file in the format 'transposed-csv' (CSV with a row for each joint), because the first "
+      "row has times, so each further row is a joint");
+  EXPECT_EQ(
+      refusal_of("0.02 3 ( 1 2 )\n"),
+      "m.dat:1: the row has 2 values between the brackets, but its number of values, n, is 3. "
+      "Ayumi read the file in the format 'zvs' (mi-lib .zvs), because the rows have the form "
+      "`dt n ( values )`");
+  EXPECT_EQ(
+      refusal_of("0.02 2 ( 1 2 )\n0.02 2 ( 1 2\n"),
+      "m.dat:2: the bracket ( is not closed, so the row was cut; copy the file again. Ayumi "
+      "read the file in the format 'zvs' (mi-lib .zvs), because the rows have the form `dt n ( "
+      "values )`");
   EXPECT_TRUE(refusal_of("0.02 2 ( 1\n2 )\n0.02 2 ( 1\n0.02 2 ( 1 2 )\n")
                   .starts_with("m.dat:3: the bracket ( is not closed"));
   EXPECT_NE(refusal_of(R"({"framerate": 50, "positions": {"0.0": {"l_knee": [1,5, 0]}}})")
@@ -305,8 +304,8 @@ TEST(MotionFormats, MistakesNameFileLineAndFormat) {
             std::string::npos);
   const ImportOptions stated{.format = "webots"};
   EXPECT_EQ(refusal_of("#WEBOTS_MOTION,V3.0,l_knee\n", "m.dat", stated),
-            "m.dat:1: version 'V3.0' is unknown; Ayumi reads V1.0 and V1.1 (the file was read as "
-            "Webots .motion)");
+            "m.dat:1: version 'V3.0' is unknown; Ayumi reads V1.0 and V1.1. Ayumi read the file in "
+            "the format 'webots' (Webots .motion)");
   EXPECT_NE(refusal_of("0 0.1 0,2\n0.1 0.1 0.2\n0.2 0 0\n", "m.pos").find("not "),
             std::string::npos);
   EXPECT_NE(refusal_of("type: CompositeSeq\ncontent: BodyMotion\ncomponents:\n  - [ 1, 2\n")
@@ -386,8 +385,9 @@ TEST(MotionFormats, JointsAreMappedByNameAndByOrderOnlyOnRequest) {
   std::string said;
   for (const std::string& line : some.filled) said += line + "\n";
   EXPECT_NE(said.find("unknown joints are left out: HeadYaw\n"), std::string::npos) << said;
-  EXPECT_NE(said.find("joints that are missing in the file keep the angles of the home posture: "),
-            std::string::npos);
+  EXPECT_NE(
+      said.find("these joints are missing in the file and keep the angles of the home posture: "),
+      std::string::npos);
   const std::string other = "#WEBOTS_MOTION,V1.0,l_knee,A,B,C\n0,p,0,0,0,0\n40,p,0,0,0,0\n";
   EXPECT_NE(refusal_of(other).find("of its 4 joints only l_knee are joints of"), std::string::npos)
       << refusal_of(other);
@@ -598,7 +598,7 @@ TEST(MotionFormats, OneOfSeveralMotionsIsChosen) {
   ImportOptions options;
   options.motion = "jump";
   EXPECT_NE(refusal_of(text, "p.yaml", options)
-                .find("there is no motion 'jump'; the file has 1 'wave', 2 'bow'"),
+                .find("there is no motion 'jump'; the motions of the file are 1 'wave', 2 'bow'"),
             std::string::npos);
 
   // These are two pages of an action file that do not follow each other.
@@ -617,7 +617,7 @@ TEST(MotionFormats, OneOfSeveralMotionsIsChosen) {
   std::string said;
   for (const std::string& line : read_motion_rows(bytes, "a.bin", hoap1(), options).filled)
     said += line + "\n";
-  EXPECT_NE(said.find("the motion 9 'sit' is read; the file has 1 'nod', 9 'sit'"),
+  EXPECT_NE(said.find("the motion 9 'sit' is read; the motions of the file are 1 'nod', 9 'sit'"),
             std::string::npos)
       << said;
 }
@@ -639,7 +639,7 @@ TEST(MotionFormats, DamagedPagesOfAnActionFileAreRefused) {
     return refusal_of(changed, "a.bin");
   };
   const std::string damaged =
-      "a.bin: page 2 of the file, to which the motion leads, is damaged (wrong checksum";
+      "a.bin: page 2 belongs to the motion, but it is damaged (wrong checksum";
   EXPECT_EQ(with(2, kHead, 1, false).find(damaged), 0u);
   EXPECT_EQ(with(2, kStepCount, 9, true).find(damaged), 0u);
   EXPECT_EQ(with(2, kHead + 3, 0x1f, true).find("a.bin: page 2, step 1, servo 1: the position "),

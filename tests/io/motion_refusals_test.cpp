@@ -184,7 +184,7 @@ TEST(MotionRefusals, Tables) {
   ASSERT_EQ(read.motion.theta.rows(), 6);
   EXPECT_NEAR(read.motion.theta(2, hoap1().find_dof("l_knee")), 0.25, 1e-12);
   EXPECT_NEAR(read.motion.fz.at(2), 61.5, 1e-9);
-  EXPECT_NE(notes_of(read).find("the rows are not evenly spaced, so they are interpolated"),
+  EXPECT_NE(notes_of(read).find("the rows are not evenly spaced in time, so Ayumi interpolates"),
             std::string::npos);
   // Options that say another thing than the file are refused, or named as not used.
   EXPECT_NE(error_message([&] {
@@ -210,7 +210,7 @@ TEST(MotionRefusals, RowsOfNumbers) {
        {"#WEBOTS_MOTION,V1.0,,l_knee\n0,p,0,0\n", "m.dat:1: a column has no name"},
        {"#WEBOTS_MOTION,V1.1\na%l_knee\n0%1\n", "the row has 2 cells"},
        {"0.02 2 ( 1 2 )\n0.02 1 ( 1 )\n", "m.dat:2: the row has 1 value, but the first row has 2"},
-       {"0 1 ( 1 )\n", "m.dat:1: dt 0 s is not above 0"},
+       {"0 1 ( 1 )\n", "m.dat:1: dt 0 s is not possible; the step must be above 0 s"},
        {"time,0,0.2,0.1\nl_knee,0,1,2\n", "m.dat:1: time 0.1 s does not come after 0.2 s"},
        {"time [ms],0,200,100\nl_knee,0,1,2\n", "m.dat:1: time 0.1 s does not come after 0.2 s"},
        // The first cell of rows without names is lost, although the other rows count.
@@ -225,8 +225,8 @@ TEST(MotionRefusals, RowsOfNumbers) {
   options.by_order = false;
   options.joints = {"l_knee", "r_knee"};
   expect_refused(
-      {{"0 0.1\n0.1 0.1\n0.2 0.1\n", "the file has 1 joint column, but --joints names 2"}}, "m.pos",
-      options);
+      {{"0 0.1\n0.1 0.1\n0.2 0.1\n", "the file has 1 joint column, but --joints has 2 names"}},
+      "m.pos", options);
   expect_refused({{"0 0.1\n", "name the .pos file beside it"}}, "m.waist", {.format = "hrpsys"});
 }
 
@@ -267,10 +267,11 @@ TEST(MotionRefusals, RatesAndTimesThatNoMotionHas) {
   };
   expect_refused(
       {{rows({"0", "0.001", "0.002", "3599"}),
-        "data row 4 comes 3599 s after the row before, but the rows of a motion are 0.01 ms to 10 "
-        "s apart; correct the times, or cut the file where rows are missing"},
+        "data row 4 comes 3599 s after the row before, but the time between two rows must be from "
+        "0.01 ms to 10 s; correct the times, or cut the file where rows are missing"},
        {rows({"0", "1", "2", "100"}),
-        "data row 4 comes 98 s after the row before, but the rows of a motion are 0.01 ms to 60 s"},
+        "data row 4 comes 98 s after the row before, but the time between two rows must be from "
+        "0.01 ms to 60 s"},
        {rows({"0", "1e-9", "2e-9"}), "the rows are 1e-06 ms apart"}},
       "m.csv");
   const auto curve_at = [](const std::string& rate) {
@@ -352,7 +353,7 @@ TEST(MotionRefusals, FilesBesideAFileOfAngles) {
     return error_message([&] { read_motion_rows(angles, main, hoap1(), options); });
   };
   beside(".waist", "0 0 0.3 0 0 0", 2);
-  EXPECT_NE(message().find("m.waist: this file has 2 rows, but the file of angles has 6"),
+  EXPECT_NE(message().find("m.waist: this file has 2 rows, but the .pos file has 6"),
             std::string::npos)
       << message();
   beside(".waist", "0 0 0.3 0 0");
@@ -367,8 +368,8 @@ TEST(MotionRefusals, FilesBesideAFileOfAngles) {
   const ImportedMotion read = read_motion_rows(angles, main, hoap1(), options);
   const std::string notes = notes_of(read);
   for (const char* const note :
-       {".hip differs from that of .waist by up to 5.7", "is up to 100 mm away from the ground",
-        "the torques of .torque are left out"})
+       {"the .waist file differ by up to 5.7", "is up to 100 mm away from the ground",
+        "the torques of the .torque file are left out"})
     EXPECT_NE(notes.find(note), std::string::npos) << notes;
   EXPECT_LE((matrix_to_rpy(read.motion.base.at(0).attitude.toRotationMatrix()) -
              Eigen::Vector3d(0, 0, 0.1))

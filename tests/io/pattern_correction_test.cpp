@@ -60,8 +60,7 @@ TEST(WithCorrection, WindowsAreInOrderAndDoNotOverlap) {
     const std::string message =
         test::error_message([&] { read_text(with_correction(kText, track)); });
     EXPECT_NE(message.find("/correction/smooth/1"), std::string::npos) << message;
-    EXPECT_NE(message.find("before the end of the window that precedes it (0.5 s)"),
-              std::string::npos)
+    EXPECT_NE(message.find("but the window before it ends later (at 0.5 s)"), std::string::npos)
         << message;
   }
 }

@@ -110,7 +110,7 @@ TEST_F(PatternFile, PosturesOfTheFileAndOfIncludedFiles) {
                       "postures": {"crouch": {"l_knee": 1.5}}})");
   const std::string twice = R"({"crouch": {"l_knee": 10}}, "include": ["lib.json"])";
   EXPECT_NE(message(with("postures", twice))
-                .find("/postures/crouch: another file that is included has a posture"),
+                .find("/postures/crouch: another included file already has a posture"),
             std::string::npos);
   put("lib.json", R"({"format": "ayumi.pattern/1"})");
   EXPECT_NE(message(with("postures", own)).find("lib.json: /format"), std::string::npos);

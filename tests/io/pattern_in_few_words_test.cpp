@@ -95,7 +95,8 @@ TEST(PatternInFewWords, DurationsAddUp) {
             std::string::npos);
   EXPECT_NE(said(R"("phases": [{"until": 2, "support": "both"}, {"duration": 3599, "support":
       "both"}])")
-                .find("this time is 3601 s from the beginning; the longest pattern is 3600 s"),
+                .find("this time is 3601 s after the beginning of the motion, but a pattern lasts "
+                      "at most 3600 s"),
             std::string::npos);
 }
 
@@ -150,8 +151,8 @@ TEST(PatternInFewWords, MistakesInBlocksAreNamed) {
   // The round is named, because the place alone does not identify it.
   EXPECT_NE(block(R"("repeat": 3, "count": "i", "phases": [{"until": "2 - ${i}",
                      "support": "both"}])")
-                .find("this phase begins at 2 s and ends at 1 s; give a later time; if 1 s are "
-                      "counted from the beginning of the phase, write \"duration\" in place of "
+                .find("this phase begins at 2 s and ends at 1 s; give a later time. If the 1 s are "
+                      "counted from the beginning of this phase, write \"duration\" in place of "
                       "\"until\" (round 2 of "
                       "3)"),
             std::string::npos);
@@ -191,7 +192,7 @@ TEST(PatternInFewWords, StepsAreSeenFromTheOtherFoot) {
   EXPECT_NEAR((last - right - Vector3d(0, 0, 0.01)).norm(), 0, 1e-12);
   EXPECT_NE(
       said(R"("phases": [{"until": 1, "support": "left", "swing": {"foot": "right"}}])")
-          .find("give the foothold as \"to\", or a step relative to the other foot as \"step\""),
+          .find("Give the foothold as \"to\", or a step relative to the other foot as \"step\""),
       std::string::npos);
   EXPECT_NE(said(R"("phases": [{"until": 1, "support": "left", "swing": {"foot": "right",
                     "to": [0, 0], "step": {}}}])")

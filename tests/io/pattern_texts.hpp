@@ -135,14 +135,16 @@ inline const std::vector<Broken>& mistakes() {
       {"phases", R"([{"until": 0, "support": "both"}])",
        "/phases/0/until: this phase begins at 0 s and ends at 0 s"},
       {"phases", R"([{"until": 2, "support": "both"}, {"until": 1, "support": "both"}])",
-       "/phases/1/until: this phase begins at 2 s and ends at 1 s; give a later time; if 1 s "
-       "are counted from the beginning of the phase, write \"duration\" in place of \"until\""},
+       "/phases/1/until: this phase begins at 2 s and ends at 1 s; give a later time. If the 1 s "
+       "are counted from the beginning of this phase, write \"duration\" in place of \"until\""},
       {"keyframes", R"([{"t": 2, "zmp": "center"}, {"t": 1.5, "zmp": "center"}])",
-       "give a later time; if 1.5 s are counted from the keyframe before, write \"after\" in place "
+       "give a later time. If the 1.5 s are counted from the keyframe before, write \"after\" in "
+       "place "
        "of \"t\""},
       {"keyframes", R"([{"t": 2, "zmp": "center"}, {"t": 2300, "zmp": "center"},
                         {"t": 2.6, "zmp": "center"}])",
-       "if the time of /keyframes/1 should be 2.3 s and not 2300 s, correct that time"},
+       "Perhaps the time of /keyframes/1 should be 2.3 s and not 2300 s. If so, correct the time "
+       "there"},
       {"phases", R"([{"until": 1, "support": "left",
                       "swing": {"foot": "right", "to": [0, 0], "lift": 15}}])",
        "/phases/0/swing/lift: 15 is too large; the largest allowed value is 10 m. Lengths are in "
@@ -207,7 +209,8 @@ inline const std::vector<Broken>& mistakes() {
        "viip-nofeedback, preview, foot-guided, dcm-step"},
       {"controller", R"({"type": "dtad", "gains": {"q": 1, "k": 2, "d": 1}})",
        "q determines k and d"},
-      {"controller", R"({"type": "dtad", "gains": {"k": 2}})", "k needs d, and d needs k"},
+      {"controller", R"({"type": "dtad", "gains": {"k": 2}})",
+       "only one of the gains k and d is given"},
       {"scenario", R"([{"type": "kick"}])",
        "/scenario/0/type: 'kick' is not allowed; the allowed values are impulse, force, torque, "
        "payload"},
@@ -227,8 +230,7 @@ inline const std::vector<Broken>& mistakes() {
        "/scenario/0/friction: -0.1 is too small"},
       {"scenario", R"([{"type": "friction", "at": 1, "mass": 1}])",
        "/scenario/0/mass: a disturbance of type \"friction\" does not have this key; its keys "
-       "are friction, "
-       "besides \"at\" and \"duration\""},
+       "are \"at\", \"duration\", friction"},
       {"scenario", R"([{"type": "floor", "at": 1, "duration": 0, "pitch": 3}])",
        "/scenario/0/duration: a motion of the floor needs a duration"},
       {"scenario", R"([{"type": "floor", "at": 1, "duration": 1}])",
@@ -245,7 +247,7 @@ inline const std::vector<Broken>& mistakes() {
       {"world", R"({"blocks": [{"x": [0.2, 0.1], "y": [0, 1], "height": 0.01}]})",
        "/world/blocks/0/x: the range is empty: [from, to] needs from < to, but"},
       {"world", R"({"blocks": [{"x": [0, 1], "position": [0, 1], "radius": 1, "height": 0.01}]})",
-       "/world/blocks/0/x: the block has the keys of a rectangle"},
+       "/world/blocks/0/x: the block has keys of a rectangle"},
       {"world", R"({"field": {"origin": [0, 0], "spacing": 0, "heights": [[0, 0], [0, 0]]}})",
        "/world/field/spacing: this value must be above 0, but it is 0"},
       {"world", R"({"field": {"origin": [0, 0], "spacing": 1, "heights": [[0, 0], [0]]}})",
@@ -277,9 +279,8 @@ inline const std::vector<Broken>& mistakes() {
       {"repair", R"({"lock": {"windows": [[-1, 2]]}})",
        "-1 s is outside the range of times, 0 to 3600 s"},
       {"repair", R"({"weights": {"l_knee": 0}})",
-       "/repair/weights/l_knee: a weight must be above 0, but it is 0; to keep the joint still, "
-       "lock "
-       "the joint"},
+       "/repair/weights/l_knee: a weight must be above 0, but it is 0. If the joint must not "
+       "change, lock the joint"},
       {"repair", R"({"trust": "force"})",
        "/repair/trust: 'force' is not allowed; the allowed values are"},
       {"repair", R"({"margin": 0.2})",

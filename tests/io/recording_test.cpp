@@ -75,13 +75,14 @@ TEST(Recording, WhatIsNoRecordingGetsOneLine) {
             "m.csv:2: this line ends with CR LF, but the lines before it end with LF; the file may "
             "consist of parts of two files. Use one kind of line end");
   EXPECT_EQ(recording_error(a + "\n" + b.substr(0, 20) + "\n"),
-            "m.csv:2: the row has 9 columns, but the rows before have 22");
+            "m.csv:2: the row has 9 columns, but each row before it has 22");
   EXPECT_EQ(recording_error(a + "\nnan" + b.substr(1) + "\n"),
             "m.csv:2: column 1: 'nan' is not a finite number");
   EXPECT_EQ(recording_error(a + "\n" + counts_row(2090 - 65536) + "\n"),
             "m.csv:2: r_knee jumps by 314 deg from the row before, but a motor moves at most 1.36 "
-            "deg in this time. Samples are missing, or the 16-bit counter has overflowed: record "
-            "again, or add or subtract 65536 counts from this row on");
+            "deg in this time. Samples are missing, or the 16-bit counter of the encoder has "
+            "overflowed. Record again; "
+            "after an overflow, you can also add or subtract 65536 counts from this row on");
   EXPECT_EQ(recording_error("0,0,0,0,0,0\n0,0,0,0,0,0\n"),
             "m.csv:1: the row has 6 columns, but the robot 'hoap1' needs 20; is this a recording "
             "of another "
@@ -89,13 +90,15 @@ TEST(Recording, WhatIsNoRecordingGetsOneLine) {
   EXPECT_EQ(recording_error(a + ",7\n" + b + ",7\n"),
             "m.csv:1: column 23 is 7, but the robot 'hoap1' has 20 devices; is this a recording of "
             "another robot?");
-  EXPECT_EQ(recording_error("0.5" + a.substr(1) + "\n" + b + "\n"),
-            "m.csv:1: rows without names are counts, but 0.5 is not a whole number; if these are "
-            "angles, add a first row with the names of the columns, such as t[s] and "
-            "r_hip_yaw[rad]");
-  EXPECT_NE(
-      recording_error(a + "\n" + "0.5" + b.substr(1) + "\n").find("m.csv:2: rows without names"),
-      std::string::npos);
+  EXPECT_EQ(
+      recording_error("0.5" + a.substr(1) + "\n" + b + "\n"),
+      "m.csv:1: the columns have no names, so their values must be encoder counts, but 0.5 is "
+      "not a whole number. If the values are angles, add a first row with the names of the "
+      "columns, such as t[s] and "
+      "r_hip_yaw[rad]");
+  EXPECT_NE(recording_error(a + "\n" + "0.5" + b.substr(1) + "\n")
+                .find("m.csv:2: the columns have no names"),
+            std::string::npos);
   EXPECT_EQ(
       recording_error("time[min],r_knee\n0,0.1\n1,0.2\n"),
       "m.csv: the unit of the times in the column 'time[min]' is not known; units are s, ms, us "
@@ -103,16 +106,18 @@ TEST(Recording, WhatIsNoRecordingGetsOneLine) {
   std::string zeros;
   for (int c = 0; c < 23; ++c) zeros += c ? ",0" : "0";
   EXPECT_EQ(recording_error(zeros + "\n" + zeros + "\n"),
-            "m.csv: every angle is 0, so the robot or its recorder was not running; record again");
+            "m.csv: all angles are 0, so the robot or its recorder was not running; record again");
 }
 
 TEST(Recording, ATableWithGapsOrOtherUnitsGetsOneLine) {
   EXPECT_EQ(recording_error("t,r_knee\n0,0.1\n0.001,0.1\n0.002,0.1\n0.010,0.1\n0.011,0.1\n"),
-            "m.csv: after t = 0.002 s (data row 3) 7 samples are missing: 8 ms pass before the "
-            "next row, but usually 1 ms; record again");
+            "m.csv: after t = 0.002 s (data row 3) 7 samples are missing, because the next row "
+            "comes 8 ms later, but usually a row comes 1 ms "
+            "after the row before; record again");
   EXPECT_EQ(recording_error("t,r_knee\n0,0.1\n0.001,0.1\n0.002,0.1\n0.004,0.1\n0.005,0.1\n"),
-            "m.csv: after t = 0.002 s (data row 3) 1 sample is missing: 2 ms pass before the next "
-            "row, but usually 1 ms; record again");
+            "m.csv: after t = 0.002 s (data row 3) 1 sample is missing, because the next row comes "
+            "2 ms later, but usually a row comes 1 ms "
+            "after the row before; record again");
   EXPECT_EQ(
       recording_error("t,r_knee\n0,0.1\n0,0.2\n0.002,0.1\n0.003,0.1\n0.004,0.1\n"),
       "m.csv: after t = 0 s (data row 1) the time does not increase; correct the time column");
@@ -131,7 +136,8 @@ TEST(Recording, ATableWithGapsOrOtherUnitsGetsOneLine) {
   for (const auto& [end, rate] : {std::pair("1e-300", "1e+300"), std::pair("60", "0.01667")})
     EXPECT_EQ(recording_error("t[s],r_knee\n0,0.1\n" + std::string(end) + ",0.1\n"),
               "m.csv: the file has " + std::string(rate) +
-                  " rows per second, but a recording has 1 to 1e+05; correct the times");
+                  " rows per second, but a recording must have from 1 to 1e+05 rows per second; "
+                  "correct the times");
   EXPECT_TRUE(recording_error("t,knee\n0,0.1\n0.001,0.1\n")
                   .starts_with("m.csv: no column is a joint of 'hoap1'; its joints are r_hip_yaw"));
 }
@@ -145,15 +151,16 @@ TEST(Recording, LoadCellsNeedACalibrationOrNames) {
     }
     return "";
   };
-  EXPECT_EQ(message("1,2,3\n1,2,3\n"),
-            "s.csv: the rows are readings without names, but the sidecar of 'hoap1' does not say "
-            "what they are; add \"load_cells\" to its \"sensors\"");
+  EXPECT_EQ(
+      message("1,2,3\n1,2,3\n"),
+      "s.csv: the rows are readings without names, but the sidecar of 'hoap1' does not say "
+      "which sensors the columns belong to; add \"load_cells\" to \"sensors\" in the sidecar");
   const SensorTable table =
       read_sensors_table("t,fz.left[N],fz.right[N]\n0,30,34\n0.001,31,33\n", "s.csv", hoap1());
   EXPECT_EQ(table.foot_load(1, 0), 31);
   EXPECT_EQ(table.foot_load(1, 1), 33);
   EXPECT_EQ(message("t,left,right\n0,0,0\n0.001,0,0\n"),
-            "s.csv: every load of the feet is 0, so the sensors were not running; record again");
+            "s.csv: all loads of the feet are 0, so the sensors were not running; record again");
 }
 
 }  // namespace

@@ -685,7 +685,7 @@ TEST(Sdf, ShapesSensorsAndJointsOfTwoAxes) {
   EXPECT_NEAR(joint("follower").mimic_offset, 0.3, 1e-15);
   const std::vector<std::string>& notes = robot.assumptions;
   EXPECT_NE(std::find(notes.begin(), notes.end(),
-                      "links without <inertial> weigh 1 kg, as SDF says: head"),
+                      "links without <inertial> get a mass of 1 kg, as SDF defines it: head"),
             notes.end());
   EXPECT_EQ(RobotModel(robot).dof_count(), 3);
 }
@@ -806,7 +806,7 @@ TEST(RobotFormats, AChainOfMimicJointsIsShort) {
     return std::string("read");
   };
   EXPECT_EQ(words_for(21), "read");
-  EXPECT_NE(words_for(23).find("joint j1: this joint mimics another one through "
+  EXPECT_NE(words_for(23).find("joint j1: this joint mimics another joint through "
                                "more than 20 joints"),
             std::string::npos)
       << words_for(23);

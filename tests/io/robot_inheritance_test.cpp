@@ -187,8 +187,9 @@ TEST(RobotInheritance, CirclesAndMissingBasesAreRefused) {
   folder.write("a.json", over_base("b/robot.json"));
   folder.write("b/robot.json", over_base("../unit.json"));
   EXPECT_EQ(unit_error(unit),
-            "b/robot.json: /base: the bases form a circle: unit.json, a.json, b/robot.json, and "
-            "the last of them names the first one as its base; remove \"base\" from one of them");
+            "b/robot.json: /base: the bases form a circle: unit.json, a.json, b/robot.json. Each "
+            "of these files names the next file as its base, and the last file names the "
+            "first one. Remove \"base\" from one of these files");
   folder.write("unit.json", over_base("unit.json"));
   EXPECT_EQ(unit_error(unit),
             "unit.json: /base: 'unit.json' is this file itself; name another robot");

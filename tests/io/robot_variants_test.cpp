@@ -195,12 +195,12 @@ TEST(RobotVariants, OnlyReadersOfUrdfIgnoreTheMassOfTheRoot) {
   const std::string biped = test::UrdfBiped{}.text();
   for (const char* const name : {"r.urdf", "r.xml", "r.sdf"})
     EXPECT_TRUE(says(load_robot_description(folder.write(name, biped).string()),
-                     "some URDF readers ignore it"))
+                     "Some URDF readers ignore the mass"))
         << name;
   const std::string sdf = test::sdf_text_of(RobotModel(parse_urdf(biped, "r.urdf", {})));
   for (const char* const name : {"s.sdf", "s.xml"})
     EXPECT_FALSE(says(load_robot_description(folder.write(name, sdf).string()),
-                      "some URDF readers ignore it"))
+                      "Some URDF readers ignore the mass"))
         << name;
 }
 
@@ -215,7 +215,7 @@ TEST(RobotVariants, JointsWithoutMassAreHeld) {
   biped = replaced(replaced(biped, "</robot>", hand), "parent link=\"trunk\"/><child link=\"hand",
                    "parent link=\"" + plain.links()[0].name + "\"/><child link=\"hand");
   const RobotDescription robot = load_robot_description(folder.write("b.urdf", biped).string());
-  EXPECT_TRUE(says(robot, "joints that carry no mass are held at 0: wrist"));
+  EXPECT_TRUE(says(robot, "these joints carry no mass, so Ayumi holds them at 0: wrist"));
   EXPECT_EQ(RobotModel(robot).dof_count(), plain.dof_count());
   EXPECT_NEAR(RobotModel(robot).mass(), plain.mass(), 1e-12);
 }

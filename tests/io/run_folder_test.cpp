@@ -230,8 +230,8 @@ TEST(SimulationLogFile, TicksAreServoPeriods) {
     SimulationLog log = random_log(3);
     log.dt = dt;
     EXPECT_EQ(parse_message(log_bytes(log)),
-              "x.bin (header): /dt: the tick is " + text::brief(dt) +
-                  " s; it must be from 1e-7 to 10 s, as a servo period");
+              "x.bin (header): /dt: the time between two samples is " + text::brief(dt) +
+                  " s, but it must be from 1e-7 to 10 s");
   }
 }
 
@@ -304,7 +304,7 @@ TEST(SimulationLogFile, BrokenFilesOfVersionOneGetOneClearMessage) {
   EXPECT_NE(parse_message(rows), "no error");
   std::string column = good;
   column.replace(column.find("measured.fz"), 11, "measured.fx");
-  EXPECT_NE(parse_message(column).find("/columns: these are not the columns of this version"),
+  EXPECT_NE(parse_message(column).find("/columns: another version of Ayumi wrote this log"),
             std::string::npos);
   // No prefix of a log and no flipped byte of its header may have a worse effect than an Error.
   for (size_t length = 0; length < good.size(); length += 97) parse_message(good.substr(0, length));
@@ -466,8 +466,8 @@ TEST(RunFolderFile, OnlyListedFilesInTheFolderAreRead) {
   const auto nothing = [](Document&) {};
   expect_refused(nothing, "no error");
   const std::string unlisted =
-      ": the run does not list this file in \"files\" of its run.json, so the file is of another "
-      "run or was changed; remove the file, or make the run again";
+      ": run.json does not list this file in \"files\", so the file belongs to another run or was "
+      "changed; remove the file, or make the run again";
   for (const std::string name : {"reference.csv", "log_open_loop.bin", "log_closed_loop.bin"})
     expect_refused(
         [&](Document& d) {
@@ -479,11 +479,11 @@ TEST(RunFolderFile, OnlyListedFilesInTheFolderAreRead) {
                  "log_closed_loop.bin" + unlisted);
   expect_refused(
       [](Document& d) { d["logs"]["closed_loop"]["file"] = "../run/log_closed_loop.bin"; },
-      "run.json: /logs/closed_loop/file: '../run/log_closed_loop.bin' is not the file of this log, "
-      "log_closed_loop.bin; make the run again");
+      "run.json: /logs/closed_loop/file: '../run/log_closed_loop.bin' is not the file of this log; "
+      "the file must be log_closed_loop.bin. Make the run again");
   expect_refused([](Document& d) { d["logs"]["closed_loop"]["file"] = "log_open_loop.bin"; },
                  "run.json: /logs/closed_loop/file: 'log_open_loop.bin' is not the file of this "
-                 "log, log_closed_loop.bin; make the run again");
+                 "log; the file must be log_closed_loop.bin. Make the run again");
   for (const std::string& name : {std::string("../victim.txt"), (folder / "victim.txt").string()})
     EXPECT_NE(message([&](Document& d) { d["files"][name] = sha256("precious"); }, verify)
                   .find("victim.txt' is not the name of a file in this folder"),
@@ -520,8 +520,8 @@ TEST(RunFolderFile, SaysWhatIsWrong) {
   for (const char* const name : {"log_open_loop.bin", "reference.csv"}) {
     const size_t size = fs::file_size(folder / name);
     fs::resize_file(folder / name, size_t{7} << 29);
-    const std::string changed = "(it has 3758096384 bytes, but " + std::to_string(size) +
-                                " in run.json); make the run again";
+    const std::string changed = "because it has 3758096384 bytes, but run.json states " +
+                                std::to_string(size) + " bytes; make the run again";
     EXPECT_NE(file_error([&] { verify_run(folder); }).find(changed), std::string::npos) << name;
     EXPECT_FALSE(is_file_of_run(folder, folder / name)) << name;
     fs::resize_file(folder / name, size);

@@ -251,8 +251,8 @@ TEST(ServoReader, ABamFileStandsBesideTheFileThatNamesIt) {
             0.012);
   std::filesystem::remove(folder.path() / "type/motor.json");
   EXPECT_EQ(error_of(folder, R"({"format": "ayumi.robot/1", "base": "type"})"),
-            "type/robot.json: /servos/1/bam: there is no file type/motor.json; a path is relative "
-            "to the file that names it");
+            "type/robot.json: /servos/1/bam: there is no file type/motor.json; state the path "
+            "relative to the folder of this sidecar");
 }
 
 // The offset of an encoder belongs to the unit. Profiles with servos of their own inherit it, and
@@ -272,17 +272,18 @@ TEST(ServoReader, TheOffsetOfAnEncoderIsTheSameInAllProfiles) {
     for (const char* profile : {"a", "b"})
       EXPECT_DOUBLE_EQ(knee(model, profile).offset, 0.4 * EIGEN_PI / 180);
   }
-  EXPECT_EQ(error_of(folder, unit(gain + ", " + offset, other)),
-            "robot.json: /profiles: the encoder of l_knee has an offset of 0.5 deg in the profile "
-            "'b', but of 0.4 deg in 'servos'; an offset belongs to the robot unit, so state it "
-            "once, in 'servos'");
-  EXPECT_NE(error_of(folder, unit(gain, other)).find("but of 0 deg in 'servos'"),
+  EXPECT_EQ(
+      error_of(folder, unit(gain + ", " + offset, other)),
+      "robot.json: /profiles: the encoder of l_knee has an offset of 0.5 deg in the profile "
+      "'b', but an offset of 0.4 deg in 'servos'. An offset belongs to the robot and not to a "
+      "profile, so state it once, in 'servos'");
+  EXPECT_NE(error_of(folder, unit(gain, other)).find("but an offset of 0 deg in 'servos'"),
             std::string::npos);
   // A robot whose profiles alone state servos: the offset of `servos` would be lost.
   EXPECT_EQ(error_of(folder, R"({"format": "ayumi.robot/1", "urdf": ")" AYUMI_SOURCE_DIR
                              R"(/examples/biped/biped.urdf", "servos": [)" +
                                  offset + "]}"),
-            "robot.json: /servos: these groups state an offset of l_knee, but no servo of this "
+            "robot.json: /servos: the groups state an offset of l_knee, but no servo of this "
             "joint; state its kp, too");
 }
 
@@ -323,18 +324,18 @@ TEST(ServoReader, SaysWhichKeysDoNotGoTogether) {
   EXPECT_EQ(group_error(R"("dely": 0.004)"), at + "/dely: unknown key; did you mean 'delay'?");
   EXPECT_EQ(group_error(R"("load_friction": {"moter": 0.1})"),
             at + "/load_friction/moter: unknown key; did you mean 'motor'?");
-  EXPECT_EQ(
-      group_error(R"("kp": 3, "position_gain": 2, "speed_gain": 1)"),
-      at + ": the group has both 'kp' and 'position_gain', which state the same thing; keep one");
-  EXPECT_EQ(
-      group_error(R"("offset": 0, "offset_deg": 0)"),
-      at + ": the group has both 'offset' and 'offset_deg', which state the same thing; keep one");
+  EXPECT_EQ(group_error(R"("kp": 3, "position_gain": 2, "speed_gain": 1)"),
+            at + ": the group has both 'kp' and 'position_gain', which state the same quantity; "
+                 "keep one of these keys");
+  EXPECT_EQ(group_error(R"("offset": 0, "offset_deg": 0)"),
+            at + ": the group has both 'offset' and 'offset_deg', which state the same quantity; "
+                 "keep one of these keys");
   EXPECT_EQ(group_error(R"("stribeck_torque": 0.1)"),
-            at + ": joint r_knee: stribeck_torque needs a stribeck_rate above 0, the joint rate at "
-                 "which this friction fades");
+            at + ": joint r_knee: with a stribeck_torque, stribeck_rate must be above 0. It is the "
+                 "joint rate at which the Stribeck friction fades");
   EXPECT_EQ(group_error(R"("load_friction": {"motor_stribeck": 0.1})"),
-            at + ": joint r_knee: the load friction at rest needs a stribeck_rate above 0, the "
-                 "joint rate at which this friction fades");
+            at + ": joint r_knee: with load friction at rest, stribeck_rate must be above 0. It is "
+                 "the joint rate at which this friction fades");
   EXPECT_EQ(group_error(R"("quantized": true)"),
             "robot.json: /servos: the servo of l_knee is quantized, but 'encoders' gives no "
             "counts_per_degree for it");
@@ -342,9 +343,11 @@ TEST(ServoReader, SaysWhichKeysDoNotGoTogether) {
   EXPECT_NE(group_error(R"("motor": {"voltage": 7})").find("'torque_constant'"), std::string::npos);
   EXPECT_EQ(group_error(R"("motor": {"voltage": 0, "torque_constant": 1, "resistance": 1})"),
             at + "/motor/voltage: this value must be above 0, but it is 0");
-  EXPECT_EQ(group_error(R"("kp": 2, "motor": {"voltage": 7, "torque_constant": 1, "resistance": 1,
+  EXPECT_EQ(
+      group_error(R"("kp": 2, "motor": {"voltage": 7, "torque_constant": 1, "resistance": 1,
                            "gain": 3})"),
-            at + "/motor/gain: the group states 'kp' too; keep one of them");
+      at + "/motor/gain: the group also states 'kp', but the gain of the motor determines this "
+           "value; keep one of these keys");
 }
 
 TEST(ServoReader, SaysWhatIsWrongWithABamFile) {

@@ -62,19 +62,19 @@ TEST(SidecarParts, AreRefusedWithTheirPlace) {
        "counts per degree cannot be 0"},
       {layout(R"("motors", "motors")"), "the column 'motors' is given twice"},
       {layout(R"("a", "interval", "motors")"), "the column 'interval' must be the first one"},
-      {layout(R"("a b", "motors")"), "'a b' is not the text of a column"},
+      {layout(R"("a b", "motors")"), "'a b' cannot be the text of a column"},
       {layout(R"("a")"), "the column 'motors' is missing"},
-      {layout(R"("interval", "motors")"), "after 'interval' must come \"2\""},
+      {layout(R"("interval", "motors")"), "after 'interval', a layout needs \"2\""},
       {layout(R"("interval", "2", "motors", "*")"), "'*' (any text) is possible only in layouts"},
       {layout(R"("motors")", R"(, "intervals_ms": [0])"), "an interval of 0 ms is not possible"},
       {layout(R"("interval", "2", "motors")", R"(, "unit": "rad")"),
-       "a layout with 'interval' holds servo targets"},
+       "a layout with 'interval' contains servo targets"},
       {R"({"layouts": [{"name": "a", "motors": 0, "columns": ["motors"]}]})",
        "0 motors are not possible; expected 1 to 127"},
       {R"({"sensors": {"load_cells": {"left": {"columns": [0], "cells": [[1, 0]], "force": [1]}}}})",
        "columns are counted from 1"},
       {R"({"sensors": {"load_cells": {"left": {"columns": [1], "cells": [], "force": [1]}}}})",
-       "there are 0 polynomials for 1 columns; give one for each"},
+       "there are 0 polynomials for 1 columns; give one polynomial for each"},
       {R"({"sensors": {"gyro": {"columns": [1, 2]}}})", "expected the columns of x, y and z"}};
   for (const auto& [members, part] : cases) expect_part(Changed(members).message(), part);
 }
@@ -114,7 +114,7 @@ TEST(SidecarParts, CalibratedReadingsAreForcesAndRates) {
   EXPECT_EQ(table.gyro.row(0), Eigen::RowVector3d(2, 3, 4));
   const std::string none = row + "0,0,1,2,3,4\n";
   expect_part(error_message([&] { read_sensors_table(none + none, "s.csv", model); }),
-              "every reading of the load cells is 0");
+              "all readings of the load cells are 0");
 }
 
 TEST(SidecarParts, RecordingsOfWrongRowsAreRefused) {
@@ -126,10 +126,11 @@ TEST(SidecarParts, RecordingsOfWrongRowsAreRefused) {
   for (int device = 0; device < 20; ++device) targets += ",7";
   const std::string row = "5,2" + targets;
   expect_part(message(row + ",R\n0,2" + targets + ",R\n"),
-              "r.csv:2: expected an interval [ms], then the code 2");
+              "r.csv:2: a row must begin with an interval [ms] and a code");
   expect_part(message(row + ",R\n" + row + ",1,R\n"),
-              "r.csv:2: the row has 24 columns, but the rows");
-  expect_part(message("5,2,1,R\n"), "4 columns are too few for the robot's 20 devices");
+              "r.csv:2: the row has 24 columns, but each row before it has");
+  expect_part(message("5,2,1,R\n"),
+              "the row has 4 columns, but the 20 devices of the robot need at least 22");
   expect_part(message(row + ",R\n"), "the sequence has fewer than two rows with targets");
   expect_part(message("t[s],l_knee[counts],l_knee\n0,1,1\n0.001,1,2\n"),
               "column 'l_knee': the joint already has another column");

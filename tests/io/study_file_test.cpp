@@ -61,8 +61,9 @@ TEST(StudyFile, ReadsEveryKindOfDistribution) {
 
 TEST(StudyFile, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(complaint(quantity_with(R"("what": "friction", "uniform": [0.4, 1])")),
-            "s.json: /uncertainty/quantities/0: the distribution has no source of its numbers; add "
-            "\"source\": a paper, a data sheet or a measurement, or \"assumed: why\"");
+            "s.json: /uncertainty/quantities/0: the source of these numbers is missing; add "
+            "\"source\", which names a paper, a data sheet or a measurement, or begins with "
+            "\"assumed:\" and states the reason");
   const auto expect = [](const std::string& members, const std::string& part) {
     const std::string text = complaint(quantity_with(members + R"(, "source": "t")"));
     EXPECT_NE(text.find(part), std::string::npos) << text;
@@ -111,7 +112,7 @@ TEST(StudyFile, TruncatedTailsAreMirrorImages) {
   }
   const std::string refused = complaint(
       quantity_with(R"("what": "mass", "truncated": [1, 0.01, 1.5, 1.6], "source": "t")"));
-  EXPECT_NE(refused.find("the range is 50 standard deviations away from the mean (limit 30)"),
+  EXPECT_NE(refused.find("the range is 50 standard deviations away from the mean, but at most 30"),
             std::string::npos)
       << refused;
 }

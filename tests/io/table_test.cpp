@@ -195,12 +195,13 @@ TEST(Table, BrokenTablesGetOneClearMessage) {
            {head + "1,1\n1.001,1\n", "row 1: time 1 s, but 0 s is expected"},
            {"# dt: 1e-3 s\n" + head + "0,1\n", "dt '1e-3 s' is not a time step"},
            {head + "0,1\n1e-300,1\n",
-            "the rows are 1e-300 s apart, but 1e-07 to 10 s are possible"},
-           {"# dt: 1e-300\n" + head + "0,1\n1e-300,1\n", "the rows are 1e-300 s apart"},
-           {head + "0,1\n60,1\n", "the rows are 60 s apart"},
+            "the time between two rows is 1e-300 s, but it must be from 1e-07 to 10 s"},
+           {"# dt: 1e-300\n" + head + "0,1\n1e-300,1\n", "the time between two rows is 1e-300 s"},
+           {head + "0,1\n60,1\n", "the time between two rows is 60 s"},
            {"time,theta.a[rad]\n0,1\n", "unknown column 'time'"},
            {"t[s],theta.a[deg]\n0,1\n", "unknown column 'theta.a[deg]'"},
-           {"t[s],cog.x[m]\n0,1\n", "the column 'cog.z[m]' is missing beside 'cog.x[m]'"},
+           {"t[s],cog.x[m]\n0,1\n",
+            "the table has the column 'cog.x[m]', but the column 'cog.z[m]' is missing"},
            {"theta.a[rad]\n1\n", "the column 't[s]' is missing"},
            {"t[s],base.x[m],base.y[m],base.z[m],base.qw,base.qx,base.qy,base.qz\n0,0,0,0,1,1,0,0\n",
             "row 1: base.qw...qz has length 1.414"},
@@ -222,7 +223,7 @@ TEST(Table, ReferencesNeedTheirFormatAndAllColumns) {
   EXPECT_NE(reference_message("t[s],theta.a[rad]\n0,1\n").find("the format line is missing"),
             std::string::npos);
   EXPECT_NE(reference_message("# format: ayumi.reference/1\nt[s],theta.a[rad]\n0,1\n")
-                .find("some are missing"),
+                .find("some of these columns are missing"),
             std::string::npos);
   text.replace(text.find("reference/1"), 11, "reference/9");
   EXPECT_NE(reference_message(text).find("format 'ayumi.reference/9' cannot be read"),

@@ -63,7 +63,7 @@ void expect_one_line(const std::string& message, const std::string& what) {
   EXPECT_TRUE(std::all_of(message.begin(), message.end(),
                           [](unsigned char c) { return c >= ' ' && c < 127; }))
       << what << ": " << message;
-  EXPECT_TRUE(message.find("(the file was read as ") != std::string::npos ||
+  EXPECT_TRUE(message.find(". Ayumi read the file in the format '") != std::string::npos ||
               message.find("import reads ") != std::string::npos ||
               message.find("; save ") != std::string::npos ||
               message.find("; cut the file") != std::string::npos ||
@@ -170,7 +170,8 @@ TEST_P(UnreadableMotions, AreRefusedInOneLineOrReadAsTheyWere) {
   const std::string latin = outcome_of(format(), with("0.1\xE9")).message;
   EXPECT_NE(
       latin.find(
-          "the byte 0xe9 is not UTF-8 text (the file may be Latin-1); save the file as UTF-8"),
+          "the byte 0xe9 is not UTF-8 text. The file may have another encoding, such as Latin-1 or "
+          "Shift-JIS; save the file as UTF-8"),
       std::string::npos)
       << latin;
   for (const char* word : {"nan", "1e999", "abc", ""})

@@ -106,7 +106,7 @@ TEST(Diagnose, NamesAnEncoderWhoseSignDisagrees) {
   const std::string text =
       findings([](auto& r) { r.encoders.at("l_knee").counts_per_degree = 209; });
   EXPECT_TRUE(mentions(text, "joints l_knee/r_knee",
-                       "the same direction here, but in opposite directions on the 9 other pairs"));
+                       "the same direction, but in opposite directions on 9 other pairs"));
 }
 
 TEST(Diagnose, NamesMissingAndPlaceholderLimits) {
@@ -127,7 +127,7 @@ TEST(Diagnose, NamesMissingAndPlaceholderLimits) {
   EXPECT_TRUE(mentions(findings([](auto& r) { r.profiles[0].peak_torque["l_knee"] = 5000; }),
                        "limits", "a torque limit of 5000 N m could throw the robot"));
   EXPECT_TRUE(mentions(findings([](auto& r) { r.profiles[0].speed["l_knee"] = 1000; }),
-                       "joint l_knee", "faster than servos are"));
+                       "joint l_knee", "higher than the speed of any servo"));
   EXPECT_TRUE(mentions(findings([](auto& r) {
                          for (auto& [name, torque] : r.profiles[0].peak_torque) torque = 100;
                        }),
@@ -164,7 +164,7 @@ TEST(Diagnose, SaysEachCauseOnce) {
     for (LinkDescription& each : r.links) each.inertia.about_com *= 1000;
   });
   EXPECT_TRUE(mentions(text, "20 joints (r_hip_yaw, r_hip_roll, r_hip_pitch, ...)",
-                       "speed limit 100 rad/s is faster"))
+                       "the speed limit of 100 rad/s is higher"))
       << text;
   EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 3) << text;
 }

@@ -219,15 +219,17 @@ TEST(RobotModel, NamesWhatIsWrongInTheUrdf) {
             "trunk; remove one joint of the loop");
   EXPECT_EQ(error_of([](auto& r) { r.links[2].inertia.mass = -1; }),
             "biped.urdf: link l_shank: mass -1 kg is negative; give the link its mass");
-  EXPECT_EQ(error_of([](auto& r) { r.links[5].inertia.mass = 0; }),
-            "biped.urdf: link r_shank: its mass is 0 although a joint moves it; give it a mass and "
-            "an inertia");
-  EXPECT_EQ(error_of([](auto& r) {
-              r.links[3].inertia = {};
-              r.links[3].has_inertial = false;
-            }),
-            "biped.urdf: link trunk: it has no <inertial> although it is the root of a robot that "
-            "moves; give it a mass and an inertia");
+  EXPECT_EQ(
+      error_of([](auto& r) { r.links[5].inertia.mass = 0; }),
+      "biped.urdf: link r_shank: the mass of this link is 0 although a joint moves this link; "
+      "give the link a mass and an inertia");
+  EXPECT_EQ(
+      error_of([](auto& r) {
+        r.links[3].inertia = {};
+        r.links[3].has_inertial = false;
+      }),
+      "biped.urdf: link trunk: this link has no <inertial> although it is the root of a robot "
+      "that moves; give the link a mass and an inertia");
   EXPECT_NE(error_of([](auto& r) { r.links[2].inertia.mass = 1e7; }).find("above 1e+06 kg"),
             std::string::npos);
   EXPECT_NE(error_of([](auto& r) {
@@ -244,7 +246,7 @@ TEST(RobotModel, NamesWhatIsWrongInTheUrdf) {
             "biped.urdf: link l_shank: its centre of mass lies farther than 10000 m away; URDF "
             "lengths are in metres");
   EXPECT_EQ(error_of([](auto& r) { r.joints[0].damping = std::nan(""); }),
-            "biped.urdf: joint l_knee: a number of this joint is not finite; correct it");
+            "biped.urdf: joint l_knee: a number of this joint is not finite; correct this number");
   EXPECT_EQ(error_of([](auto& r) { r.joints[0].friction = -1; }),
             "biped.urdf: joint l_knee: its friction is -1; it cannot be negative");
   EXPECT_EQ(error_of([](auto& r) { r.joints[0].axis.setZero(); }),
@@ -255,12 +257,12 @@ TEST(RobotModel, NamesWhatIsWrongInTheUrdf) {
             "biped.urdf: joint l_knee: this joint mimics the joint 'hip', which does not exist; "
             "did you mean "
             "'l_hip'?");
-  EXPECT_EQ(
-      error_of([](auto& r) {
-        r.joints[0].mimic = "l_hip";
-        r.joints[1].mimic = "l_knee";
-      }),
-      "biped.urdf: joint l_knee: this joint mimics itself through other joints; break the circle");
+  EXPECT_EQ(error_of([](auto& r) {
+              r.joints[0].mimic = "l_hip";
+              r.joints[1].mimic = "l_knee";
+            }),
+            "biped.urdf: joint l_knee: this joint mimics itself through other joints; change "
+            "<mimic> of one of these joints");
   EXPECT_EQ(error_of([](auto& r) { r.joints[0].mimic = "l_cap"; }),
             "biped.urdf: joint l_knee: this joint mimics the joint 'l_cap', which does not move");
 }
@@ -280,7 +282,8 @@ TEST(RobotModel, MissingMeshesMayBeWhySolesAreMissing) {
   EXPECT_NE(message().find("the robot has no soles"), std::string::npos) << message();
   EXPECT_EQ(message().find("meshes"), std::string::npos) << message();
   robot.missing_meshes = {"foot.stl"};
-  EXPECT_NE(message().find("find the missing meshes, which `ayumi inspect` lists"),
+  EXPECT_NE(message().find(
+                "find the missing meshes, because they may show the feet: `ayumi inspect` lists"),
             std::string::npos)
       << message();
 }

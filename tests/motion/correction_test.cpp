@@ -128,7 +128,7 @@ TEST(Correction, TracksThatDoNotFitAreRefused) {
   EXPECT_EQ(refused(good), "no error");
   CorrectionTrack track = good;
   track.joints.pop_back();
-  EXPECT_EQ(refused(track), "correction: there are 8 columns, but base and joints need 7");
+  EXPECT_EQ(refused(track), "correction: there are 8 columns, but the base and the joints need 7");
   const std::string finite =
       "correction: the spacing must be above 0 and every coefficient a finite number";
   for (const double spacing : {0.0, -0.1, std::nan("")}) {

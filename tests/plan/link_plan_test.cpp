@@ -276,7 +276,7 @@ TEST(LinkPlan, SaysByHowMuchAHandIsOutOfReach) {
   const size_t at_mm = message.find("reach by ") + 9;
   const double missing = std::stod(message.substr(at_mm));
   EXPECT_NEAR(missing, 100, 12) << message;
-  EXPECT_NE(message.find("in the frame of the trunk; move the target"), std::string::npos);
+  EXPECT_NE(message.find("in the frame of the trunk. Move the target"), std::string::npos);
 }
 
 // Places around the trunk that the arm cannot reach, with joints at their limits. A random search
@@ -347,8 +347,8 @@ TEST(LinkPlan, APostureThatReachesAPlaceIsNamed) {
     const std::string message =
         test::error_message([&] { sample(model, pattern, {.dt = 0.01}); }, ErrorCode::bad_pattern);
     const std::string words =
-        "the left hand cannot reach this place from the posture before this time;"
-        " these angles reach the place: ";
+        "the left hand cannot reach this place from the posture before this time."
+        " These angles reach the place: ";
     const size_t found = message.find(words), time = message.find("t = ");
     ASSERT_NE(found, std::string::npos) << message;
     Keyframe& key = at(pattern, std::stod(message.substr(time + 4)));
@@ -404,14 +404,14 @@ TEST(LinkPlan, DoesNotMeasureTheReachOfATrunkThatIsOnItsWay) {
   EXPECT_NE(message.find("on the way to this key: the right hand is out of reach by "),
             std::string::npos)
       << message;
-  EXPECT_NE(message.find("the trunk also moves at this time"), std::string::npos) << message;
+  EXPECT_NE(message.find("The trunk also moves at this time"), std::string::npos) << message;
   // The hand should be there before the trunk bends: the place is out of reach at the key itself.
   at(too_early, 1.5).hands["right"] = place(end);
   const std::string at_key = error_of(too_early);
   EXPECT_NE(at_key.find("/hands/right: t = 1.500 s: the right hand is out of reach by "),
             std::string::npos)
       << at_key;
-  EXPECT_NE(at_key.find("; move the target, or move or tilt the trunk"), std::string::npos)
+  EXPECT_NE(at_key.find(". Move the target, or move or tilt the trunk"), std::string::npos)
       << at_key;
   // If the trunk is bent first, the same place is reached.
   Pattern late = bow(1.5, 1.5);

@@ -84,7 +84,7 @@ TEST(SampleErrors, UnknownPosture) {
 
 TEST(SampleErrors, TimesOutOfOrder) {
   expect_words(message_of([](Pattern& p) { p.keyframes[2].t = p.keyframes[1].t; }),
-               {"/keyframes/2", "times must increase"});
+               {"/keyframes/2", "Key times must increase"});
   expect_words(message_of([](Pattern& p) { p.phases[2].until = p.phases[1].until; }),
                {"walk.json: /phases/2", "give a later \"until\""});
 }
@@ -107,8 +107,9 @@ TEST(SampleErrors, SwingOfASupportingFoot) {
 }
 
 TEST(SampleErrors, FlightNeedsMore) {
-  expect_words(message_of([](Pattern& p) { p.phases[2].support = Support::none; }),
-               {"phases/2", "flight", "key of the COG height at lift-off and one at touchdown"});
+  expect_words(
+      message_of([](Pattern& p) { p.phases[2].support = Support::none; }),
+      {"phases/2", "flight", "Give a key of the COG height at the lift-off and another key"});
   expect_words(message_of([](Pattern& p) { p.phases[0].support = Support::none; }),
                {"phases/0", "a phase on the ground before and after"});
 }
@@ -117,7 +118,7 @@ TEST(SampleErrors, FootOutOfReach) {
   const std::string message =
       message_of([](Pattern& p) { p.phases[1].swing->to.position.x() = 0.35; });
   expect_words(message, {"walk.json: /phases/", "t = ", "foot is out of reach by", " mm",
-                         "lower the COG height"});
+                         "Lower the COG height"});
 }
 
 TEST(SampleErrors, CogTooHigh) {
@@ -132,7 +133,7 @@ TEST(SampleErrors, FootKeysThatDragASupportingFoot) {
                  foot.position = {0.05, 0.05, 0};
                  p.keyframes[1].feet[0] = foot;
                }),
-               {"phases/0", "left foot", "while it carries", "the key /keyframes/1 at ",
+               {"phases/0", "left foot", "because it carries the robot", "The key /keyframes/1 at ",
                 "is at [0.05, 0.05, 0] m, 50 mm away", "the place where the foot stands"});
   // A place that differs by rounding only is not another place.
   EXPECT_EQ(message_of([](Pattern& p) {
@@ -181,7 +182,7 @@ TEST(SampleErrors, Tables) {
   expect_words(message_of_table([](DenseTable& t) { t.theta(3, 0) = NAN; }),
                {"a joint angle is not a finite number"});
   expect_words(message_of_table([](DenseTable& t) { t.dt = 10; }),
-               {"the table ends at 190 s, after the last phase", "extend the phases"});
+               {"the table ends at 190 s, after the last phase", "Extend the phases"});
   expect_words(message_of_table([](DenseTable& t) { t.joints.push_back("r_shoulder"); }),
                {"has 1 joint columns, but 2 joint names"});
   expect_words(message_of_table([](DenseTable& t) { t.joints = {"l_shouldr"}; }),
@@ -196,7 +197,7 @@ TEST(SampleErrors, Tables) {
                  table.joints = {"l_shoulder"};
                  table.theta = Eigen::MatrixXd::Constant(20, 1, 0.1);
                }),
-               {"'l_shoulder' has keys too; keep the keys or the column"});
+               {"'l_shoulder' has a column and also keys"});
 }
 
 TEST(SampleErrors, TimesAndWeightsOfKeys) {
@@ -220,7 +221,7 @@ TEST(SampleErrors, SamplingStep) {
     }
   }
   expect_words(message_of([](Pattern& p) { p.phases.back().until = 1e9; }),
-               {"phases", "only 5 to 4e6 are possible"});
+               {"phases", "but 5 to 4e6 steps are possible"});
 }
 
 TEST(SampleErrors, NumbersThatAreNotFinite) {
@@ -229,7 +230,7 @@ TEST(SampleErrors, NumbersThatAreNotFinite) {
                  for (Phase& phase : p.phases)
                    if (phase.swing) phase.swing->lift = nan;
                }),
-               {"walk.json: /phases/", "/swing", "not finite or the lift is below 0"});
+               {"walk.json: /phases/", "/swing", "not finite, or the lift is below 0"});
   expect_words(message_of([&](Pattern& p) {
                  for (Phase& phase : p.phases)
                    if (phase.swing) phase.swing->lift = -0.01;
@@ -247,8 +248,9 @@ TEST(SampleErrors, StepsThatDoNotFitTheMotion) {
   EXPECT_EQ(refused(std::nan(""), ErrorCode::usage), "sampling step nan s must be above 0");
   EXPECT_EQ(refused(0.2, ErrorCode::bad_pattern), "no error");
   for (const double dt : {0.3, 2e-7})
-    expect_words(refused(dt, ErrorCode::bad_pattern),
-                 {"phases", "1 s at a step of", "only 5 to 4e6 are possible"});
+    expect_words(
+        refused(dt, ErrorCode::bad_pattern),
+        {"phases", "a motion of 1 s with a sampling step of", "but 5 to 4e6 steps are possible"});
 }
 
 }  // namespace

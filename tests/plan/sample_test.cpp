@@ -275,7 +275,7 @@ TEST(Sample, CogKeysGiveZmpAndForceOfTheFullModel) {
   const CommandSeries half = sample(model, pattern);
   EXPECT_NEAR(half.samples.back().cog.x(), 0.02, 1e-12);
   EXPECT_NEAR(half.samples.back().cog.y(), 0.0, 1e-9);
-  EXPECT_NE(half.origin.at("cog").find("solved in y"), std::string::npos);
+  EXPECT_NE(half.origin.at("cog").find("computed in y"), std::string::npos);
 }
 
 TEST(Sample, TorsoKeysTiltTheTrunkAndPostureKeysMoveTheArms) {
@@ -396,7 +396,7 @@ TEST(Sample, LegsOfFiveJointsKeepTheZmp) {
   }
   const CommandSeries series = sample(model, pattern, {.dt = 0.01});
   const std::string& legs = series.origin.at("legs");
-  EXPECT_TRUE(legs.starts_with("a leg has only 5 joints, so at some places the leg cannot"))
+  EXPECT_TRUE(legs.starts_with("a leg has only 5 joints, so it cannot keep the sole level"))
       << legs;
   EXPECT_LT(worst_zmp_error(model, series), 0.0005);
   EXPECT_NEAR(series.samples[100].zmp.y() - data.cog.y(), 0.004, 0.0005);

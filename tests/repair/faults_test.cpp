@@ -224,8 +224,7 @@ TEST_F(Faults, APostureLockedWhereItIsWrongIsNamed) {
   EXPECT_EQ(r.status, RepairStatus::infeasible);
   EXPECT_EQ(r.work.rounds, 0);
   ASSERT_EQ(r.reasons.size(), 1u);
-  EXPECT_NE(r.reasons[0].find("the posture at 3 s is locked, so remove the lock"),
-            std::string::npos)
+  EXPECT_NE(r.reasons[0].find("The posture at 3 s is locked. Remove the lock"), std::string::npos)
       << r.reasons[0];
 }
 

@@ -31,7 +31,7 @@ TEST(InfeasibilityReport, NamesTheTimeForWhichAFootStandsOn) {
   EXPECT_EQ(found[0].text.find(" mm"), std::string::npos) << found[0].text;
   EXPECT_NE(found[0].text.find(" ms after its contact has ended"), std::string::npos)
       << found[0].text;
-  EXPECT_NE(found[0].text.find("this window is locked, so remove the lock"), std::string::npos)
+  EXPECT_NE(found[0].text.find("This window is locked. Remove the lock"), std::string::npos)
       << found[0].text;
 }
 

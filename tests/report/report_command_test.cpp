@@ -33,8 +33,8 @@ TEST_F(ReportCommand, TakesPushThresholds) {
   write(folder / "run" / "push.json", push);
   const Output older = ayumi({"report", "run", "-o", "r.html", "--no-replay"});
   EXPECT_EQ(older.exit_code, 3);
-  EXPECT_NE(older.err.find("push.json: the file has no \"contents_sha256\": an older version of "
-                           "Ayumi wrote it, or it was changed; run `ayumi push` again"),
+  EXPECT_NE(older.err.find("push.json: the file has no \"contents_sha256\", so an older version of "
+                           "Ayumi wrote the file, or the file was changed; run `ayumi push` again"),
             std::string::npos)
       << older.err;
   write(folder / "run" / "push.json", sealed(push));

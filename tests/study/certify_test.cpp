@@ -182,9 +182,23 @@ TEST(UncertainTask, RefusesWhatNothingUsesAndWhatNoRobotCanHave) {
   CertifyOptions options;
   options.most = 299;
   const std::string text = error_message([&] { run_cases(negative.task, options); });
-  EXPECT_NE(text.find("for the mass (factor on mass and inertia), but it must be above 0"),
+  EXPECT_NE(text.find("for the mass (factor on mass and inertia), but the value must be above 0"),
             std::string::npos)
       << text;
+}
+
+// In an earlier version, a factor, a length and a force were numbers without a unit.
+TEST(UncertainTask, WritesEveryValueWithItsUnit) {
+  const StandingTask t(R"("quantities": [
+      {"what": "mass", "on": "l_foot", "choice": [1.1], "source": "t"},
+      {"what": "cog", "on": "l_foot", "axis": "y", "choice": [0.004], "source": "t"},
+      {"what": "friction", "choice": [0.7], "source": "t"},
+      {"what": "load_bias", "choice": [-0.25], "source": "t"},
+      {"what": "sensor_latency", "choice": [0.003], "source": "t"}])");
+  const std::string words = t.task.values_text(values_of(t.task, 0));
+  for (const char* const part :
+       {" x 1.1; ", " +0.004 m; ", "friction 0.7; ", " -0.25 N; ", " 0.003 s"})
+    EXPECT_NE(words.find(part), std::string::npos) << part << ": " << words;
 }
 
 TEST(UncertainTask, RefusesPushesThatHaveNoEffectAndValuesInAWrongUnit) {
@@ -206,7 +220,7 @@ TEST(UncertainTask, RefusesPushesThatHaveNoEffectAndValuesInAWrongUnit) {
   };
   expect(of_push(R"("size": 1, "time": 1.5)"), "the run ends at 1.401 s");
   expect(of_push(R"("size": 1, "time": -0.5)"), "case 0 draws -0.5 for the push: time");
-  expect(of_push(R"("size": -1, "time": 0.1)"), "it must not be negative");
+  expect(of_push(R"("size": -1, "time": 0.1)"), "the value must not be negative");
   EXPECT_EQ(message(of_push(R"("size": 1, "time": 1.3, "on": "trunk")")), "no error");
   const auto of_kind = [](const std::string& what) {
     return R"("quantities": [{"what": ")" + what + R"(", "choice": [4], "source": "t"}])";

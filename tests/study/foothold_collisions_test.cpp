@@ -47,10 +47,11 @@ TEST(FootholdCollisions, NameTheStepAndValuesThatAreConsistent) {
   const std::vector<Mistake> found = found_in(task_of(turning_text("deg", "30")));
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].place, "/phases/5/swing");
-  EXPECT_NE(found[0].words.find("the left foot lands 1.8 mm inside the right foot; with side = "),
+  EXPECT_NE(found[0].words.find("the left foot lands 1.8 mm inside the right foot. With side = "),
             std::string::npos)
       << found[0].words;
-  EXPECT_NE(found[0].words.find(" deg, no error remains"), std::string::npos) << found[0].words;
+  EXPECT_NE(found[0].words.find(" deg, no error would remain"), std::string::npos)
+      << found[0].words;
 }
 
 // Feet that are exchanged overlap by much more, and this is reported as another mistake.

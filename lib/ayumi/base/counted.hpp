@@ -12,11 +12,11 @@ std::string counted(Count count, const std::string& noun, const std::string& plu
   return std::to_string(count) + " " + (count == 1 ? noun : plural.empty() ? noun + "s" : plural);
 }
 
-/// A text such as "no error remains", "1 of 4 errors remains" or "2 of 4 errors remain".
+/// What a change would leave, such as "no error would remain" or "2 of 4 errors would remain".
 template <class Count>
 std::string remaining(Count left, Count all, const std::string& noun) {
-  if (left == 0) return "no " + noun + " remains";
-  return std::to_string(left) + " of " + counted(all, noun) + (left == 1 ? " remains" : " remain");
+  return (left == 0 ? "no " + noun : std::to_string(left) + " of " + counted(all, noun)) +
+         " would remain";
 }
 
 }  // namespace ayumi::text

@@ -131,7 +131,16 @@ std::string brief(double value, int digits) {
 }
 
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
+  // An abbreviation is nearer than every other word. Fewer characters than these, without the
+  // dashes of an option, begin too many words. Chosen.
+  constexpr size_t kShortestAbbreviation = 3;
+  const size_t dashes = std::min(word.find_first_not_of('-'), word.size());
   std::string best;
+  if (word.size() - dashes >= kShortestAbbreviation)
+    for (const std::string& candidate : candidates)
+      if (candidate.starts_with(word) && (best.empty() || candidate.size() < best.size()))
+        best = candidate;
+  if (!best.empty()) return best;
   size_t best_distance = std::max<size_t>(2, word.size() / 3) + 1;
   for (const std::string& candidate : candidates) {
     // The distance is at least the difference of the lengths; a word may have megabytes.

@@ -16,7 +16,9 @@ std::string fixed(double value, int digits);
 /// The value with at most `digits` significant digits, for people, such as "0.0123".
 std::string brief(double value, int digits = 4);
 
-/// The candidate nearest to `word` by edit distance; empty if none is near enough to be suggested.
+/// The candidate that `word` abbreviates: the shortest one that begins with `word`. If there is
+/// none, the candidate nearest to `word` by edit distance; empty if none is near enough to be
+/// suggested.
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
 
 /// The text "; did you mean 'x'?" if a candidate is near, otherwise "".

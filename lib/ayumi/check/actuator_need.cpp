@@ -37,14 +37,15 @@ std::vector<std::string> missing(const RobotModel& model, const ConsistencyRepor
     if (!f) continue;
     const int dof = dof_of(*f);
     if (dof >= 0 && model.limits(report.profile).lacks_motor(dof)) {
-      parts.push_back("a motor at " + f->where + ", which has none (kp of its servo is 0), at " +
-                      text::fixed(f->at, 2) + " s");
+      parts.push_back("a motor at " + f->where + " at " + text::fixed(f->at, 2) +
+                      " s (this joint has none, because kp of its servo is 0)");
       continue;
     }
     const ShownUnit unit = shown_unit(f->unit, f->in_degrees);
     parts.push_back(text::brief(std::abs(f->worst) * unit.scale, 3) + " " + unit.name +
                     spec->actuator.after + " at " + f->where + " at " + text::fixed(f->at, 2) +
-                    " s (limit " + text::brief(std::abs(f->limit) * unit.scale, 3) + ")");
+                    " s (limit " + text::brief(std::abs(f->limit) * unit.scale, 3) + " " +
+                    unit.name + ")");
   }
   return parts;
 }
@@ -86,12 +87,12 @@ std::string flight_words(const RobotModel& model, const CommandSeries& series,
   const auto rise = [](double duration) {
     return text::brief(1e3 * kGravity * duration * duration / 8, 2) + " mm";
   };
-  return least->where + " can move fast enough for a flight of at most " +
-         text::brief(possible, 2) + " s (a rise of " + rise(possible) +
-         ") with the legs in these postures, but the flight lasts " + text::brief(lasts, 3) +
-         " s (a rise of " + rise(lasts) +
-         "). This bound is for this joint alone: the stoops and the other joints may make the "
-         "possible flight shorter still";
+  return "with the postures of the legs at the lift-off and the landing, the speed of " +
+         least->where + " is enough for a flight of at most " + text::brief(possible, 2) +
+         " s (a rise of " + rise(possible) + "), but the planned flight lasts " +
+         text::brief(lasts, 3) + " s (a rise of " + rise(lasts) + "). This bound considers " +
+         least->where +
+         " alone. With the other joints, the longest possible flight may be even shorter";
 }
 
 ActuatorNeed need_of(const RobotModel& model, const CommandSeries& series,
@@ -107,10 +108,10 @@ ActuatorNeed need_of(const RobotModel& model, const CommandSeries& series,
       need.sufficient.push_back(name);
   }
   need.text = "profile " + report.profile + " is too weak: the motion needs " +
-              text::join(parts, ", ") + "; " +
+              text::join(parts, ", ") + ". " +
               (need.sufficient.empty()
-                   ? "no other profile is strong enough"
-                   : (need.sufficient.size() > 1 ? "the profiles " : "the profile ") +
+                   ? "No other profile is strong enough"
+                   : (need.sufficient.size() > 1 ? "The profiles " : "The profile ") +
                          text::join(need.sufficient, ", ") +
                          (need.sufficient.size() > 1 ? " are strong enough" : " is strong enough"));
   need.flight = flight_words(model, series, report);
@@ -132,8 +133,8 @@ ActuatorNeed actuator_need(const RobotModel& model, const std::vector<KeyedGoal>
         need_of(model, goal.motion, options, check_consistency(model, goal.motion, options));
     if (need.text.empty()) continue;
     need.text = goal.place + ": " + need.text +
-                " (the time of a joint is counted from the beginning of the motion that was "
-                "planned for this goal)";
+                ". The times of joints are counted from the beginning of the motion that Ayumi "
+                "planned for this goal";
     return need;
   }
   return {};

@@ -142,7 +142,7 @@ class Fit {
   // ---- another length of a round
 
   std::string lengths() const {
-    return "the phases of a round of " + phases_.place + " last " +
+    return "The phases of one round of " + phases_.place + " last " +
            hypotheses::seconds(phases_.period) + ", but the keyframes of " + keys_.place +
            " repeat every " + hypotheses::seconds(keys_.period);
   }
@@ -162,7 +162,7 @@ class Fit {
       if (meant < kShortest) continue;
       add(
           pattern_.phases[phase].pointer,
-          "the phase lasts " + hypotheses::seconds(lasts) + "; " + lengths(),
+          "the phase lasts " + hypotheses::seconds(lasts) + ". " + lengths(),
           "with a duration of " + hypotheses::seconds(meant),
           [block = phases_, j, by = meant - lasts](Pattern& p) {
             double later = 0;
@@ -187,7 +187,7 @@ class Fit {
       if (meant < kShortest) continue;
       add(
           pattern_.keyframes[key].pointer,
-          "the keyframe comes " + hypotheses::seconds(lasts) + " after the keyframe before it; " +
+          "the keyframe comes " + hypotheses::seconds(lasts) + " after the keyframe before it. " +
               lengths(),
           "with " + hypotheses::seconds(meant) + " between these two keyframes",
           [block = keys_, j, by = meant - lasts](Pattern& p) {
@@ -210,7 +210,7 @@ class Fit {
     add(keys_.place,
         "the repeated keyframes begin at " + hypotheses::seconds(keys_.begin) +
             ", but the repeated phases begin at " + hypotheses::seconds(phases_.begin) +
-            "; one round lasts " + hypotheses::seconds(keys_.period),
+            ". One round lasts " + hypotheses::seconds(keys_.period),
         "with these and all later keyframes " + hypotheses::seconds(std::abs(late)) +
             (late > 0 ? " earlier," : " later,"),
         [first = keys_.first, late](Pattern& p) {

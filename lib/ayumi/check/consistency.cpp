@@ -217,10 +217,10 @@ ConsistencyReport check_consistency(const RobotModel& model, const CommandSeries
   if (!model.has_soles())
     fail(ErrorCode::bad_model, model.name() +
                                    ": the robot has no soles, so its "
-                                   "contacts cannot be checked; give /soles in the sidecar");
+                                   "contacts cannot be checked. Give /soles in the sidecar");
   if (series.samples.empty())
     fail(ErrorCode::bad_pattern,
-         "the motion has no samples, so there is nothing to check; sample a pattern first");
+         "the motion has no samples, so there is nothing to check. Sample a pattern first");
   if (!(series.dt > 0)) fail(ErrorCode::usage, "the time step of the motion must be above 0 s");
   JudgedMotion motion(model, series, options);
   judge(motion, options.threads, observe);

@@ -12,6 +12,7 @@
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/json_pointer.hpp"
+#include "ayumi/base/sentence.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/consistency.hpp"
 #include "ayumi/check/hypotheses/unit_hypotheses.hpp"
@@ -149,7 +150,7 @@ class Suspicions {
       if (dof < 0 || model_.dofs()[dof].prismatic || !model_.dofs()[dof].limited) return;
       if (std::abs(angle) > 2 * std::numbers::pi)
         found.push_back({place, joint + " is at " + text::brief(angle) +
-                                    " rad, which is more than a turn; if the angle is in degrees, "
+                                    " rad, which is more than a turn. If the angle is in degrees, "
                                     "write \"units\": {\"angle\": \"deg\"}"});
     };
     for (size_t i = 0; i < pattern_.keyframes.size(); ++i)
@@ -177,7 +178,7 @@ class Suspicions {
     if (count >= kManyAngles && 2 * whole < count)
       said_.push_back(
           {"/units",
-           "all joint angles are numbers below 6.28 (2 pi), which is small for degrees; if "
+           "all joint angles are numbers below 6.28 (2 pi), which is small for degrees. If "
            "the angles are in radians, "
            "write \"units\": {\"angle\": \"rad\"}"});
   }
@@ -189,7 +190,7 @@ class Suspicions {
           {"/world/friction",
            "the friction of the ground is " + text::brief(mu) +
                ", but rubber on dry concrete has about 1" +
-               (mu <= 100 ? "; if this is a percentage, write " + text::brief(mu / 100) : "")});
+               (mu <= 100 ? ". If this is a percentage, write " + text::brief(mu / 100) : "")});
   }
 
   void pushes() {
@@ -211,7 +212,7 @@ class Suspicions {
                           (impulse ? "" : " within " + text::brief(acts) + " s");
       if (1e-3 * speed <= kFastestPush)
         words +=
-            "; if this number is in m" + unit + ", write " + text::brief(1e-3 * push->magnitude);
+            ". If this number is in m" + unit + ", write " + text::brief(1e-3 * push->magnitude);
       found.push_back({"/scenario/" + std::to_string(i), words});
     }
     say(found);
@@ -228,7 +229,7 @@ class Suspicions {
                          "the disturbance begins at " + text::brief(pattern_.scenario[i].at) +
                              " s, but the motion ends at " + text::brief(feet_->duration()) +
                              " s. The simulation ends " + text::brief(kHeld) +
-                             " s after the motion, so the disturbance has no effect; let the "
+                             " s after the motion, so the disturbance has no effect. Let the "
                              "disturbance begin earlier, or make the motion longer"});
     say(found);
   }
@@ -242,7 +243,7 @@ class Suspicions {
         found.push_back(
             {phase_place(i),
              std::string("the swing lasts ") + text::brief(lasts) +
-                 " s. Times are in seconds; if these times are in ms, divide them by 1000"});
+                 " s. Times are in seconds. If these times are in ms, divide them by 1000"});
     }
     const std::vector<Phase>& phases = feet_->phases();
     const bool swings = std::any_of(phases.begin(), phases.end(),
@@ -250,7 +251,7 @@ class Suspicions {
     if (!swings && feet_->duration() > kLongestStand)
       found.push_back(
           {"", "the motion lasts " + text::brief(feet_->duration()) +
-                   " s. Times are in seconds; if these times are in ms, divide them by 1000"});
+                   " s. Times are in seconds. If these times are in ms, divide them by 1000"});
     say(found);
   }
 
@@ -265,12 +266,12 @@ class Suspicions {
       if (height <= most && height >= kLowestCog * home) return;
       std::string words = "the COG height is " + metres(height) + ", but the COG of " +
                           model_.name() + " is " + metres(home) +
-                          " above the soles in the home posture, and " +
+                          " above the soles in the home posture. The COG height " +
                           (height > most ? "can be at most " + metres(most)
                                          : "should be at least " + metres(kLowestCog * home));
       for (const auto& [unit, factor] : {std::pair("mm", 1e-3), std::pair("cm", 1e-2)})
         if (height * factor <= most && height * factor >= kLowestCog * home)
-          words += "; heights are in metres, and " + text::brief(height) + " " + unit + " are " +
+          words += ". Heights are in metres, and " + text::brief(height) + " " + unit + " are " +
                    metres(height * factor);
       found.push_back({place, words});
     };
@@ -331,14 +332,14 @@ class Suspicions {
         if (soles_overlap(swing.foot, landing(i)))
           found.push_back({phase_place(i), std::string("the ") + name_of(swing.foot) +
                                                " foot lands on the " + name_of(other(swing.foot)) +
-                                               " foot; perhaps left and right were exchanged"});
+                                               " foot. Perhaps left and right were exchanged"});
         continue;
       }
       found.push_back({phase_place(i),
                        std::string("the ") + name_of(swing.foot) + " foot lands " +
                            text::fixed(-1000 * outwards, 0) + " mm to the " +
                            name_of(other(swing.foot)) + " of the " + name_of(other(swing.foot)) +
-                           " foot, so the legs cross; perhaps left and right were exchanged"});
+                           " foot, so the legs cross. Perhaps left and right were exchanged"});
     }
     say(found);
   }
@@ -394,10 +395,11 @@ class Suspicions {
           (feet_->pose(idle, phase.until).translation() - feet_->pose(idle, begin).translation())
               .norm();
       if (std::abs(height) < kOnGround && moved < kOnGround)
-        found.push_back(
-            {phase_place(i), std::string("the robot stands on the ") + name_of(other(idle)) +
-                                 " foot alone, but the " + name_of(idle) +
-                                 " foot stays on the ground; its swing may be missing"});
+        found.push_back({phase_place(i), std::string("the robot stands on the ") +
+                                             name_of(other(idle)) + " foot alone, but the " +
+                                             name_of(idle) +
+                                             " foot stays on the ground. Perhaps a swing of the " +
+                                             name_of(idle) + " foot is missing"});
     }
     say(found);
   }
@@ -442,11 +444,12 @@ class Suspicions {
         others.push_back(one.place);
     if (others.size() > kNamedLifts) others = {text::counted(others.size(), "other keyframe")};
     say({{highest->place,
-          std::string("the ") + name_of(highest->side) + " foot is " +
-              text::fixed(1000 * highest->lift, 0) + " mm up" +
-              (others.empty() ? "" : " (and up in " + text::join(others, " and ") + ")") +
-              ", and the COG rises by half of this height, because the COG height without keys is "
-              "measured from the mean height of both soles; keep the COG down with keys of "
+          std::string("the ") + name_of(highest->side) + " foot is lifted by " +
+              text::fixed(1000 * highest->lift, 0) + " mm" +
+              (others.empty() ? ""
+                              : " (it is also lifted in " + text::join(others, " and ") + ")") +
+              ". The COG rises by half of this height, because without keys the COG keeps its "
+              "height above the mean of both soles. Keep the COG down with keys of "
               "\"cog\": {\"height\": ...}, or lower /defaults/cog_height"}});
   }
 
@@ -462,9 +465,9 @@ class Suspicions {
         if (dof < 0 || !model_.has_soles() || (!in(Side::left) && !in(Side::right))) continue;
         found.push_back(
             {key_place(i),
-             joint + " is a joint of a leg; as soon as one leg joint has a key, all leg joints "
-                     "follow only their keys, and the legs are not solved from the feet and the "
-                     "COG; remove this key, and give keys of the COG, the feet or the torso "
+             joint + " is a joint of a leg. As soon as one leg joint has a key, all leg joints "
+                     "follow only their keys, and Ayumi no longer computes them from the feet and "
+                     "the COG. Remove this key, and give keys of the COG, the feet or the torso "
                      "instead"});
         break;
       }
@@ -500,7 +503,7 @@ std::optional<Mistake> times_in_ms(const RobotModel& model, const Pattern& patte
     if (error.code() != ErrorCode::bad_pattern) throw;
   }
   if (mistake.explains_all)
-    mistake.words += ". With all times read as ms, the pattern is consistent";
+    mistake.words += ". With all times read as ms, the pattern would be consistent";
   return mistake;
 }
 
@@ -515,7 +518,7 @@ std::vector<Mistake> likely_mistakes(const RobotModel& model, const Pattern& pat
   std::vector<Mistake> mistakes;
   for (const Explanation& e : search.found)
     mistakes.push_back({.place = e.place,
-                        .words = e.written + "; " + e.instead,
+                        .words = text::two_sentences(e.written, e.instead),
                         .explains_all = e.enough,
                         .round = e.round});
   const std::vector<Mistake> impossible = impossible_values(model, pattern);
@@ -526,13 +529,13 @@ std::vector<Mistake> likely_mistakes(const RobotModel& model, const Pattern& pat
     for (const Mistake& why : impossible)
       if (const Explanation& e = search.found.front();
           why.place == e.place && why.words.starts_with(e.written + ","))
-        mistakes.front().words = why.words + "; " + e.instead;
+        mistakes.front().words = text::two_sentences(why.words, e.instead);
   if (search.complete) return mistakes;
   const std::string stopped =
       "the search stopped after " + std::to_string(search.trials) + " trial changes of the pattern";
   if (mistakes.empty())
     return {{.place = "", .words = "no likely cause was found, and " + stopped, .is_cause = false}};
-  mistakes.back().words += "; there may be another cause, because " + stopped;
+  mistakes.back().words += ". There may be another cause, because " + stopped;
   return mistakes;
 }
 
@@ -549,8 +552,9 @@ Error with_mistakes(const Error& error, const Pattern& pattern,
   const auto cause = std::find_if(mistakes.begin(), mistakes.end(),
                                   [](const Mistake& mistake) { return mistake.is_cause; });
   if (cause == mistakes.end()) {
-    const std::string more = "; " + mistakes.front().words;
-    return {error.code(), error.what() + more, error.place(), error.words() + more};
+    const std::string& more = mistakes.front().words;
+    return {error.code(), text::two_sentences(error.what(), more), error.place(),
+            text::two_sentences(error.words(), more)};
   }
   const bool in_file = !pattern.file.empty() && error.place().file == pattern.file;
   std::string causes;

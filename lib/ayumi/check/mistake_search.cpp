@@ -290,8 +290,8 @@ class Search {
     }
     const WrittenNumber& number = value.numbers.front();
     const double limit = number.neutral + possible * (number.value - number.neutral);
-    const std::string up_to =
-        (number.value > number.neutral ? "up to " : "of at least ") + value.text(pattern_, limit);
+    const std::string bound = (number.value > number.neutral ? "of at most " : "of at least ") +
+                              value.text(pattern_, limit);
     const std::string written = value.words + " is " + value.text(pattern_, number.value);
     // A change this small is only named if it is enough: then the author need not change more.
     const bool tiny = std::abs(number.value - limit) < kLeastMistake * value.unit(model_);
@@ -300,10 +300,10 @@ class Search {
     const auto [smaller, larger] = std::minmax({from, limit});
     const std::string range =
         (least > 0 ? "from " + value.text(pattern_, smaller) + " to " + value.text(pattern_, larger)
-                   : up_to) +
+                   : bound) +
         value.elsewhere();
     note({{Rank::amount,
-           {value.place, written, "with values " + range},
+           {value.place, written, "with a value " + range},
            // The errors that remain are those after the smallest change, because an author takes
            // the smallest one.
            [value, possible](Pattern& p) { value.pull(p, possible); },
@@ -317,7 +317,7 @@ class Search {
     const bool other_sign =
         limit / number.value < kNoShare && std::abs(number.value) < value.unit(model_);
     if (value.has_sign(model_))
-      slips.push_back(sign_of(value, ", or with values " + range,
+      slips.push_back(sign_of(value, ", or with a value " + range,
                               value.across ? Rank::slip
                               : other_sign ? Rank::exchange
                                            : Rank::sign));
@@ -327,7 +327,7 @@ class Search {
       slips.push_back({Rank::slip,
                        {value.place, written,
                         why + " (" + value.text(pattern_, factor * number.value) +
-                            "), or with values " + range + ","},
+                            "), or with a value " + range + ","},
                        [value, factor](Pattern& p) { value.scale(p, factor); }});
     };
     // The smallest change comes first.
@@ -362,9 +362,8 @@ class Search {
     const std::string negated = value.text(pattern_, -number);
     return {rank,
             {value.place, value.words + " is " + value.text(pattern_, number),
-             (value.across
-                  ? "on the other side (" + negated + "; perhaps left and right were exchanged)"
-                  : "with the other sign (" + negated + ")") +
+             (value.across ? "with " + negated + " (perhaps left and right were exchanged)"
+                           : "with the other sign (" + negated + ")") +
                  more + ","},
             [value](Pattern& p) { value.scale(p, -1); }};
   }
@@ -446,10 +445,10 @@ class Search {
 };
 
 std::string result_words(const TrialOutcome& before, const TrialOutcome& after) {
-  if (after.good()) return "the pattern is consistent";
+  if (after.good()) return "the pattern would be consistent";
   if (before.errors == kUnsampled)
-    return "the motion can be sampled, and " + text::counted(after.errors, "error") +
-           (after.errors == 1 ? " remains" : " remain");
+    return "the motion could be computed, and " + text::counted(after.errors, "error") +
+           " would remain";
   if (after.errors >= before.errors)
     return text::remaining(after.findings, before.findings, "finding");
   return text::remaining(after.errors, before.errors, "error");
@@ -459,9 +458,9 @@ std::string result_words(const TrialOutcome& before, const TrialOutcome& after) 
 // again at the servo's period.
 std::string words_at_period(const TrialOutcome& before, const TrialOutcome& after) {
   if (after.good()) return result_words(before, after);
-  return "only " + text::counted(after.errors, "error") +
-         (after.of_table ? " of the table for the robot " : " at the servo's period ") +
-         (after.errors == 1 ? "remains" : "remain");
+  return "only " + text::counted(after.errors, "error") + " would remain, " +
+         (after.of_table ? "in the joint table for the robot"
+                         : "which a check at the period of the servos finds");
 }
 
 // The place and the words before the first number: what a change concerns, whatever its value.
@@ -481,11 +480,11 @@ std::string together_with(const std::vector<Explanation>& changes) {
   for (const Explanation& change : changes)
     if (std::find(places.begin(), places.end(), change.place) == places.end())
       places.push_back(change.place);
-  return std::string(" (together with the ") + (changes.size() > 1 ? "changes" : "change") +
-         " named first for " + text::join(places, " and ") + ")";
+  return " (together with the first change for " +
+         text::join(places, " and the first change for ") + ")";
 }
 
-// "with t = 1 s, ": the beginning of a sentence.
+// "with t = 1 s, ": the condition of a sentence.
 std::string before_result(const std::string& instead) {
   return instead + (instead.ends_with(',') ? " " : ", ");
 }

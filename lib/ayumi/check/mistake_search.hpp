@@ -19,7 +19,7 @@ namespace ayumi {
 struct Explanation {
   std::string place;    ///< JSON pointer in the pattern's file
   std::string written;  ///< the written value: "the right foot's x is 0.9 m"
-  std::string instead;  ///< the remedy: "with 0.09 m, ..., the pattern is consistent"
+  std::string instead;  ///< the remedy: "with 0.09 m, ..., the pattern would be consistent"
   bool enough = false;  ///< whether the pattern is consistent with this change
   /// The changes of one round are alternatives. After the first round (0), one change of each
   /// earlier round is also needed.

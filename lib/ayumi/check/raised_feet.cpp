@@ -115,7 +115,7 @@ class RaisedFeet {
              std::string("the ") + name_of(side) + " foot carries the robot from " +
                  text::brief(t) + " s on, but its last key before this time puts the foot " +
                  "at z = " + text::brief(height(side, t)) +
-                 " m, and the ground there is at z = " + text::brief(ground(side, t)) + " m",
+                 " m. The ground there is at z = " + text::brief(ground(side, t)) + " m",
              "with one more key at " + text::brief(t) +
                  " s that puts the foot back to its old place",
              [t, s, old](Pattern& p) { add_key(p, t, s, old); },

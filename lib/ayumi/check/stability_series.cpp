@@ -94,7 +94,7 @@ StabilityNotes::StabilityNotes(const RobotModel& model, const CommandSeries& ser
       stretch_(std::max(1, static_cast<int>(std::lround(dt / series.dt)))) {
   if (series.samples.empty())
     fail(ErrorCode::bad_pattern,
-         "the motion has no samples, so there is nothing to show; sample a pattern first");
+         "the motion has no samples, so there is nothing to show. Sample a pattern first");
   next_contacts_ = next_contacts(series);
   notes_.assign(series.samples.size(), {kNone, kNone, kNone, kNone, kNone, kNone});
 }

@@ -185,10 +185,10 @@ class Reader {
             .start = turn ? yaw : from.translation()[axis],
             .across = axis == 1};
         static constexpr const char* steps[] = {"forward", "side", "up", "turn"};
-        NumberTrack step{
-            .words = std::string("the ") + name_of(side) + " foot's step " + steps[axis],
-            .quantity = to.quantity,
-            .across = axis == 1};
+        NumberTrack step{.words = std::string("\"") + steps[axis] + "\" of the " + name_of(side) +
+                                  " foot's step",
+                         .quantity = to.quantity,
+                         .across = axis == 1};
         for (size_t i = 0; i < pattern_.phases.size(); ++i) {
           const auto& swing = pattern_.phases[i].swing;
           if (!swing || swing->foot != side) continue;

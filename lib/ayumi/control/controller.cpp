@@ -119,7 +119,7 @@ void Controller::set_goal(const ViipSpan& span, long k) {
            "phase at " + text::fixed(static_cast<double>(k) * series_->dt, 3) +
                " s: " + std::to_string(steps->steps) + " steps take " + text::fixed(needed, 2) +
                " s from standing to standing, but the phase lasts " + text::fixed(time, 2) +
-               " s; make the phase longer, or take fewer steps");
+               " s. Make the phase longer, or take fewer steps");
   }
   viip.set_goal(span.goal, end - k);
 }

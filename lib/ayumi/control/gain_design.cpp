@@ -115,27 +115,28 @@ DtadParams design_gains(double omega, const GainWishes& wishes, DtadParams param
     const double right = p1.real() < 0 ? p2.real() : p1.real();
     if (!(p1.real() < 0 && p2.real() < 0))
       refuse("a pole with the real part", right,
-             "it must be below 0, because otherwise the COG never comes back");
+             "the real part must be below 0, because otherwise the COG never comes back");
     params = gains_from_poles(p1 / omega, p2 / omega, params);
   }
   if (wishes.absorb) {
     if (!(*wishes.absorb >= 0 && *wishes.absorb < 1))
-      refuse("a short-term absorption of", *wishes.absorb, "it must be at least 0 and below 1");
+      refuse("a short-term absorption of", *wishes.absorb,
+             "the absorption must be at least 0 and below 1");
     params.zmp_gain = *wishes.absorb / (1 - *wishes.absorb);
   }
   if (wishes.return_time) {
     if (!(*wishes.return_time > 0))
-      refuse("a return time of", *wishes.return_time, "it must be above 0 s");
+      refuse("a return time of", *wishes.return_time, "the time must be above 0 s");
     params.pull_rate = params.pull_damping = 1 / (omega * *wishes.return_time);
   }
   if (wishes.zmp_filter) {
     if (!(*wishes.zmp_filter > 0))
-      refuse("a ZMP filter time of", *wishes.zmp_filter, "it must be above 0 s");
+      refuse("a ZMP filter time of", *wishes.zmp_filter, "the time must be above 0 s");
     params.zmp_filter = omega * *wishes.zmp_filter;
   }
   if (wishes.forget) {
     if (!(*wishes.forget >= 0))
-      refuse("a forgetting time of", *wishes.forget, "it must be at least 0 s");
+      refuse("a forgetting time of", *wishes.forget, "the time must be at least 0 s");
     params.offset_time = omega * *wishes.forget;
   }
   for (const auto& [name, value] : {std::pair("k", params.k.value_or(0)),
@@ -277,12 +278,12 @@ std::string gains_in_words(const std::vector<std::pair<std::string, double>>& ga
 std::string remedy(const std::vector<LoopModel>& loops, const DtadParams& params) {
   const double low = largest_stable_ka(loops, params, params.zmp_gain);
   if (low > 1e-6)
-    return "choose ka below " + text::fixed(low, 2) + ", for which the loop is stable";
+    return "Choose ka below " + text::fixed(low, 2) + ", for which the loop is stable";
   if (const auto stable = nearest_stable_gains(loops, params))
-    return "choose " + gains_in_words(changed_loop_gains(*stable, params)) +
+    return "Choose " + gains_in_words(changed_loop_gains(*stable, params)) +
            ", for which the loop is stable";
-  return "the loop is unstable for every ka, and for all ks, kd, damp and tau_z that were tried, "
-         "because the servos are too soft for this robot: use stiffer servos";
+  return "The loop is unstable for every ka and for all ks, kd, damp and tau_z that were tried, "
+         "because the servos are too soft for this robot. Use stiffer servos";
 }
 
 // Support and direction of a loop in words.
@@ -302,7 +303,7 @@ std::string growth(const std::vector<LoopModel>& loops, const DtadParams& params
          text::brief(1e3 * loop.delay) + " ms late. " + oscillation(loop) + " at " +
          text::fixed(weakest.analysis.frequency, 1) +
          " Hz, and an error grows by the factor e in " +
-         text::brief(-1 / weakest.analysis.decay, 2) + " s; " + remedy(loops, params);
+         text::brief(-1 / weakest.analysis.decay, 2) + " s. " + remedy(loops, params);
 }
 
 }  // namespace

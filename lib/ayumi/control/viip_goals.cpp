@@ -147,14 +147,13 @@ std::string obstacle(const RobotModel& model, const CommandSample& held, const V
   if (!(height + displacement.z() > kLowestShare * height))
     return "the COG would be " + text::fixed(1e3 * std::abs(height + displacement.z()), 1) +
            " mm " + (height + displacement.z() < 0 ? "below" : "above") +
-           " the ground, but it must be at least " + text::fixed(1e3 * kLowestShare * height, 1) +
+           " the ground, but must be at least " + text::fixed(1e3 * kLowestShare * height, 1) +
            " mm above the ground";
   const double inside = support_polygon(model, held.feet, Support::both).margin(goal.head<2>());
   if (inside < margin)
     return "the COG would be " + text::fixed(1e3 * std::abs(inside), 1) + " mm " +
-           (inside < 0 ? "outside" : "inside") +
-           " the support of the feet, but it must be at least " + text::fixed(1e3 * margin, 1) +
-           " mm inside";
+           (inside < 0 ? "outside" : "inside") + " the support of the feet, but must be at least " +
+           text::fixed(1e3 * margin, 1) + " mm inside";
   const Attempt attempt = lead_to(model, held, goal);
   if (attempt.miss < kGoalReached) return {};
   return "the legs bring the COG no closer than " + text::fixed(1e3 * attempt.miss, 1) +
@@ -182,11 +181,12 @@ void require_reachable(const RobotModel& model, const CommandSample& held, const
   const double possible = possible_share(
       [&](double share) { return obstacle(model, held, params, share * goal.displacement); });
   fail(ErrorCode::bad_pattern,
-       place + "COG displacement " + in_millimetres(goal.displacement) + ": " + why + "; " +
+       place + "COG displacement " + in_millimetres(goal.displacement) + ": " + why + ". " +
            (possible > 0
-                ? "in this direction " + in_millimetres(possible * goal.displacement) +
-                      " is possible: reduce the displacement, or hold the COG at another height"
-                : std::string("not even the posture without a displacement is possible")));
+                ? "In this direction, a displacement of " +
+                      in_millimetres(possible * goal.displacement) +
+                      " is possible. Reduce the displacement, or keep the COG at another height"
+                : std::string("Even the posture without a displacement is not possible")));
 }
 
 /// A velocity of the COG, with the place where it begins and its duration [m], [s].
@@ -239,10 +239,11 @@ void require_reachable(const RobotModel& model, const CommandSample& held, const
   if (why.empty()) return;
   const double possible = possible_share(obstacle_at);
   fail(ErrorCode::bad_pattern,
-       place + "COG velocity " + in_millimetres(path.velocity) + "/s: " + why + "; " +
-           (possible > 0 ? "in this direction " + in_millimetres(possible * path.velocity) +
-                               "/s is possible: reduce the velocity, or make the phase shorter"
-                         : std::string("not even a small velocity in this direction is possible")));
+       place + "COG velocity " + in_millimetres(path.velocity) + "/s: " + why + ". " +
+           (possible > 0
+                ? "In this direction, a velocity of " + in_millimetres(possible * path.velocity) +
+                      "/s is possible. Reduce the velocity, or make the phase shorter"
+                : std::string("Even a small velocity in this direction is not possible")));
 }
 
 void require_reachable(const RobotModel& model, const CommandSample& held, const ViipParams& params,
@@ -256,7 +257,7 @@ void require_reachable(const RobotModel& model, const CommandSample& held, const
     fail(ErrorCode::bad_pattern,
          place + "a COG velocity of " + text::brief(goal.velocity.norm()) + " m/s needs steps of " +
              text::fixed(1e3 * length, 1) + " mm every " + text::fixed(period, 3) +
-             " s; the largest step is " + text::fixed(1e3 * most, 1) +
+             " s. The largest step is " + text::fixed(1e3 * most, 1) +
              " mm, which gives a velocity of " + text::fixed(most / period, 3) + " m/s");
   const double turn = std::abs(goal.turn) * period;
   if (!(turn <= kStepTurnLimit))

@@ -209,7 +209,8 @@ void tare(const SimulationLog& log, double dt, std::array<VectorXd, 2>& measured
       result.notes.push_back("sensors: the load cells of the " +
                              std::string(foot == 0 ? "left" : "right") + " foot read " +
                              text::brief(zero, 2) +
-                             " N while the foot is in the air; this is subtracted");
+                             " N while the foot is in the air; this value is subtracted from all "
+                             "readings of the foot");
   }
 }
 
@@ -300,8 +301,8 @@ std::string unit_complaint(const std::string& what, double measured, double simu
                            const std::string& unit) {
   if (measured < kOtherUnit * simulated && simulated < kOtherUnit * measured) return "";
   return what + (measured < simulated ? "much smaller" : "much larger") +
-         " than in the run (measured " + text::brief(measured, 3) + ", simulated " +
-         text::brief(simulated, 3) + " " + unit + "); are the readings in " + unit + "?";
+         " than in the run: " + text::brief(measured, 3) + " in the recording, but " +
+         text::brief(simulated, 3) + " " + unit + " in the run. Are the readings in " + unit + "?";
 }
 
 /// Lines about units and signs of the loads of the feet, and about feet that are exchanged.
@@ -317,8 +318,9 @@ std::vector<std::string> load_complaints(const std::vector<ComparedCurve>& loads
       std::minmax_element(loads[2].simulated.begin(), loads[2].simulated.end());
   if (loads[2].correlation<kOpposite&& * most - *least> kShareRange)
     lines.emplace_back(
-        "a foot carries the robot when the other foot should; exchange the readings of the left "
-        "and right foot");
+        "in the recording, the left foot carries the robot when the right foot carries it in the "
+        "run, "
+        "and the other way round; exchange the readings of the left and the right foot");
   return lines;
 }
 
@@ -347,7 +349,7 @@ std::vector<std::string> imu_complaints(const std::vector<ComparedCurve>& imu) {
     if (measured.dot(simulated) < kOpposite * measured.norm() * simulated.norm())
       lines.emplace_back(
           "the acceleration points down, but an accelerometer at rest reads an acceleration of g "
-          "upward; change its sign");
+          "upward; change the sign of the readings");
   }
   if (turns_simulated > kTurning) {
     const std::string unit =
@@ -355,9 +357,9 @@ std::vector<std::string> imu_complaints(const std::vector<ComparedCurve>& imu) {
     if (!unit.empty()) lines.push_back(unit);
   }
   if (!opposite.empty())
-    lines.push_back(
-        "the readings of " + opposite +
-        " have the opposite sign of the angular velocity in the run; change their sign");
+    lines.push_back("the readings of " + opposite +
+                    " have the opposite sign of the angular velocity in the run; change the sign "
+                    "of these readings");
   return lines;
 }
 
@@ -376,14 +378,14 @@ Comparison compare(const RobotModel& model, const SimulationLog& log,
         options.shift ? *options.shift : -time_shift(model, simulated, *measured, kReach);
     if (std::abs(measured->dt - log.dt) > 1e-6)
       result.notes.push_back("the recording has " + text::brief(1 / measured->dt) +
-                             " rows per second and the run " + text::brief(1 / log.dt) +
-                             "; both are compared at the slower rate");
+                             " rows per second, and the run has " + text::brief(1 / log.dt) +
+                             ". Both are compared at the lower of these rates");
   } else {
     result.shift = options.shift.value_or(0);
     if (!options.shift)
       result.notes.push_back(
-          "without joint angles the time shift cannot be found, so the recording is taken to begin "
-          "at 0 s of the run; --shift sets another time");
+          "without joint angles, the time shift between recording and run cannot be found. Ayumi "
+          "assumes that the recording begins at 0 s of the run; --shift sets another time");
   }
   const Index sensor_rows = std::max(
       {sensors.foot_load.rows(), sensors.acceleration.rows(), sensors.gyro.rows(), Index{0}});
@@ -399,8 +401,9 @@ Comparison compare(const RobotModel& model, const SimulationLog& log,
   if (result.end - result.begin < 10 * interval)
     fail(ErrorCode::bad_file, {file},
          "the recording lasts from " + text::fixed(result.shift, 3) + " to " +
-             text::fixed(result.shift + lasts, 3) + " s of the run, which lasts " +
-             text::fixed(simulated.duration(), 3) + " s. The time to compare is " +
+             text::fixed(result.shift + lasts, 3) +
+             " s in the time of the run, and the run lasts " +
+             text::fixed(simulated.duration(), 3) + " s. The time that can be compared is " +
              text::fixed(std::max(0.0, result.end - result.begin), 3) + " s, but at least " +
              text::fixed(10 * interval, 3) + " s are needed");
   for (Index k = 0;; ++k) {

@@ -133,10 +133,12 @@ std::string exchange_words(const RobotModel& model, const std::vector<Index>& gr
   for (const Index j : group) names.push_back(model.dofs()[static_cast<size_t>(j)].name);
   if (names.size() == 2)
     return names[0] + " and " + names[1] +
-           " seem to be exchanged: the measured angle of each follows the command of the other";
+           " seem to be exchanged: the measured angle of each of these joints follows the command "
+           "of the other joint";
   return text::join(names, ", ") +
-         " seem to be exchanged: the measured angle of each follows the command of the next one, "
-         "and that of the last one follows the command of the first";
+         " seem to be exchanged: the measured angle of each joint follows the command of the next "
+         "joint in this list, and the measured angle of the last joint follows the command of the "
+         "first joint";
 }
 
 }  // namespace ayumi

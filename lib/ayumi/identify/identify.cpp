@@ -547,8 +547,7 @@ std::string late_answer(const RobotModel& model, const std::vector<IdentifiedJoi
   return "the angles are " + text::fixed(1000 * lag, 0) +
          " ms behind their command, but the servos in the robot's file have a lag of " +
          text::fixed(1000 * (lag - beyond), 0) +
-         " ms: make sure that both files begin at the "
-         "same time";
+         " ms. Make sure that both files begin at the same time";
 }
 
 // The caution about angles that are ahead of their commands by one or two rows, which
@@ -557,9 +556,9 @@ std::string early_answer(const RobotModel& model, const RecordedMotion& motion) 
   const double shift = time_shift(model, motion.command, motion.measured, 0);
   if (shift >= 0) return "";
   return "the angles are about " + text::brief(-1000 * shift, 2) +
-         " ms ahead of their command, which is impossible for a servo, so every delay is too "
-         "short: "
-         "make sure that both files begin at the same time";
+         " ms ahead of their command, which is impossible for a servo. So every delay in this "
+         "result "
+         "is too short. Make sure that both files begin at the same time";
 }
 
 std::vector<std::string> motor_types(const RobotModel& model) {

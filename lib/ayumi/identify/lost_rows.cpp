@@ -408,10 +408,10 @@ std::string lost_rows_words(const LostRows& lost, const AngleTable& measured) {
                            " s, one row every " + text::brief(1000 * dt) + " ms",
                     rows = text::counted(count, "row"), are = count == 1 ? " is " : " are ",
                     change = text::brief(1000 * dt * static_cast<double>(count), 3) + " ms " +
-                             (lost.rows > 0 ? "earlier" : "later") + " than before";
+                             (lost.rows > 0 ? "earlier" : "later") + " than in the rows before";
   return (lost.exact ? "at data row " : "near data row ") + std::to_string(lost.row + 1) + " (" +
          time + "), " + rows + are + (lost.rows > 0 ? "missing" : "repeated") +
-         ": from here on, the angles are " + change +
+         ". From this row on, the angles come " + change +
          (measured.timed ? ", although the times of the rows have no gap; record again"
                          : "; record again, or give the rows a time column");
 }
@@ -427,11 +427,11 @@ std::string loads_rows_complaint(const SensorTable& loads, const AngleTable& mea
   if (std::abs(lasts - asked) <= allowed) return "";
   const long missing = std::max(1L, std::lround(std::abs(lasts - asked) / loads.dt));
   return "the recording has " + std::to_string(rows) + " rows, one every " +
-         text::brief(1000 * loads.dt) + " ms, which last " + text::fixed(lasts, 3) +
-         " s, but the measured angles last " + text::fixed(asked, 3) +
-         " s: " + text::counted(missing, "row") + (missing == 1 ? " is " : " are ") +
+         text::brief(1000 * loads.dt) + " ms, so it lasts " + text::fixed(lasts, 3) +
+         " s, but the measured angles last " + text::fixed(asked, 3) + " s. So " +
+         text::counted(missing, "row") + (missing == 1 ? " is " : " are ") +
          (lasts < asked ? "missing" : "too many") +
-         ", and the rows have no times; record both again, or give the rows a time column";
+         ", and the rows have no times. Record both again, or give the rows a time column";
 }
 
 }  // namespace ayumi

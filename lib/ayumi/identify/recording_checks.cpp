@@ -152,7 +152,7 @@ std::string wrong_sign_or_unit(const Relation& r) {
   if (r.slope < 0) return "moves against its command; change the sign of its encoder";
   const std::string times = "moves " + text::brief(factor, 3) + " times as far as its command; ";
   if (std::abs(factor * kDegree - 1) < 0.2 || std::abs(factor / kDegree - 1) < 0.2)
-    return times + "one of the two files is in degrees (--unit deg)";
+    return times + "one of the two files is in degrees, so give --unit deg";
   if (factor > kScale || factor < 1 / kScale)
     return times +
            "is this the recording of another robot, or are the counts per degree of this joint "
@@ -184,9 +184,10 @@ std::vector<std::string> motion_complaints(const RobotModel& model, const AngleT
               "); is this the recording of another command or of another robot?";
     else if (wrong.empty() && r.away > kAway &&
              std::abs(r.away - kCounterRange * measured.resolution[j]) < kAway)
-      wrong = "is " + text::brief(r.away / kDegree, 3) +
-              " deg (65536 counts) away from its command: the 16-bit counter of its "
-              "encoder has overflowed; add or subtract 65536 counts in these rows, or record again";
+      wrong =
+          "is " + text::brief(r.away / kDegree, 3) +
+          " deg (65536 counts) away from its command, because the 16-bit counter of its encoder "
+          "has overflowed; add or subtract 65536 counts in these rows, or record again";
     else if (wrong.empty() && r.away > kAway)
       wrong = "is " + text::brief(r.away / kDegree, 3) +
               " deg away from its command on average; is this the recording of another robot?";
@@ -207,7 +208,7 @@ void require_answer(const RobotModel& model, const AngleTable& command, const An
   if (lasts - asked > kLengthShare * asked + kLengthTime || asked - lasts > kShorter)
     complain("the recording lasts " + text::fixed(lasts, 3) + " s, but its command lasts " +
              text::fixed(asked, 3) +
-             " s; the recording is incomplete, has another rate (give --rate), or belongs to "
+             " s. The recording is incomplete, or has another rate (give --rate), or belongs to "
              "another command");
   if (const auto groups = exchanged_joints(model, command, measured, 0, longest_lag, 0, asked);
       !groups.empty())
@@ -231,10 +232,10 @@ void require_answer(const RobotModel& model, const AngleTable& command, const An
       complain("the angles are " + text::fixed(1000 * std::abs(shift), 0) + " ms " +
                (shift > 0 ? "behind" : "ahead of") + " their command" +
                (shift > 0 ? ", but a servo is at most " + text::fixed(1000 * longest_lag, 0) +
-                                " ms behind (the longest lag)"
+                                " ms behind its command"
                           : "") +
-               "; the recording is shifted, so let the recording and the command begin at the same "
-               "time");
+               ". The recording is shifted in time; let the recording and the command begin at the "
+               "same time");
   }
   const double behind = std::clamp(shift, 0.0, longest_lag);
   if (const LostRows lost = lost_rows(command, measured, dofs, behind); lost.found)
@@ -246,11 +247,11 @@ void require_answer(const RobotModel& model, const AngleTable& command, const An
   if (!measured.timed && asked - lasts > least) {
     const long missing = std::max(1L, std::lround((asked - lasts) / measured.dt));
     complain("the recording has " + std::to_string(measured.theta.rows()) + " rows, one every " +
-             text::brief(1000 * measured.dt) + " ms, which last " + text::fixed(lasts, 3) +
-             " s, but its command lasts " + text::fixed(asked, 3) +
-             " s: " + text::counted(missing, "row") + (missing == 1 ? " is" : " are") +
-             " missing. Every motion is complete, so the rows are missing in a pause or at the "
-             "end; record again, or give the rows a time column");
+             text::brief(1000 * measured.dt) + " ms, so it lasts " + text::fixed(lasts, 3) +
+             " s, but its command lasts " + text::fixed(asked, 3) + " s. So " +
+             text::counted(missing, "row") + (missing == 1 ? " is" : " are") +
+             " missing, in a pause or at the end, because the moving parts of the recording are "
+             "complete. Record again, or give the rows a time column");
   }
   const std::vector<std::string> wrong =
       motion_complaints(model, command, measured, behind, 0, command.duration());
@@ -269,14 +270,14 @@ void require_loads(const SensorTable& loads, const AngleTable& measured, double 
     fail(ErrorCode::bad_file, {file},
          "the recording lasts " + text::fixed(lasts, 3) + " s, but the measured angles last " +
              text::fixed(measured.duration(), 3) +
-             " s; the file of the load cells is incomplete, has another rate "
-             "(give --rate), or belongs to another recording");
+             " s. The file of the load cells is incomplete, or has another rate (give --rate), or "
+             "belongs to another recording");
   if (agreement < kStandingShare)
     fail(ErrorCode::bad_file, {file},
          "while one foot stands, its load cells carry only " + text::fixed(100 * agreement, 0) +
-             " % of the weight (at least " + text::fixed(100 * kStandingShare, 0) +
-             " % are expected); the readings of the load cells are shifted in time or "
-             "belong to another recording, or left and right are exchanged");
+             " % of the weight, but at least " + text::fixed(100 * kStandingShare, 0) +
+             " % are expected. The readings of the load cells are shifted in time or belong to "
+             "another recording, or left and right are exchanged");
 }
 
 }  // namespace ayumi

@@ -23,7 +23,9 @@ void add_ramps(double seconds, const RobotModel& model, ImportedMotion& imported
     imported.filled.insert(imported.filled.end(), cut.words.begin(), cut.words.end());
     return;
   }
-  const std::string ends = cut.begin && cut.end ? "begins and ends" : cut.begin ? "begins" : "ends";
+  const std::string ends = cut.begin && cut.end ? "at the beginning and at the end"
+                           : cut.begin          ? "at the beginning"
+                                                : "at the end";
   if (!cut.begin && !cut.end) {
     imported.filled.push_back("--ramp is not used, because the motion begins and ends at rest");
     return;
@@ -33,9 +35,9 @@ void add_ramps(double seconds, const RobotModel& model, ImportedMotion& imported
         "the ZMP and the vertical force of the file are left out, because a ramp changes them");
   imported.motion = with_ramps(model, std::move(imported.motion), seconds);
   imported.sequence.clear();  // its rows are no longer the rows of the motion
-  imported.filled.push_back(
-      "the motion " + ends + " slowly: with --ramp, " + text::brief(seconds) +
-      " s pass between rest and the recorded speed, and the path stays as recorded");
+  imported.filled.push_back("with --ramp, the motion takes " + text::brief(seconds) +
+                            " s between rest and the recorded speed " + ends +
+                            ". The path stays as recorded");
 }
 
 void require_bounds(const PatternImport& options) {
@@ -57,7 +59,9 @@ ImportedPattern of_keys(ImportedKeys keys, const PatternImport& options) {
   result.rows = static_cast<int>(result.pattern.keyframes.size());
   result.filled = std::move(keys.filled);
   if (options.ground || options.ramp > 0)
-    result.filled.push_back("--ground and --ramp are not used, because the file has key poses");
+    result.filled.push_back(
+        "--ground and --ramp are not used, because they apply only to files with rows of joint "
+        "angles, and this file has key poses");
   return result;
 }
 
@@ -97,7 +101,8 @@ ImportedPattern import_pattern(const std::string& bytes, const std::string& file
   require_bounds(options);
   if (is_pattern_text(bytes))
     fail(ErrorCode::bad_file, {file},
-         "this is a pattern already; import reads motions in the formats " +
+         "this file is already a pattern of Ayumi, so it needs no import; import reads motions in "
+         "the formats " +
              text::join(read_format_names(), ", "));
   std::optional<ImportedKeys> keys = read_key_poses(bytes, file, model, options.reading);
   ImportedPattern result =
@@ -135,7 +140,7 @@ void write_imported(const fs::path& path, ImportedPattern& imported) {
   const fs::path copy = copy_beside(path, imported.format);
   imported.filled.push_back("a copy of the " + std::string(rows ? "sequence" : "file") +
                             " is kept in " + copy.filename().string() +
-                            "; as long as the motion is unchanged, `ayumi export" +
+                            ". As long as the motion is not changed, `ayumi export" +
                             (rows ? "" : " --format " + imported.format) + "` writes " +
                             (rows ? "the rows of this copy" : "the bytes of this copy"));
   if (rows) {

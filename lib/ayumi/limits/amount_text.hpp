@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <string>
 
+#include "ayumi/base/sentence.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/limits/finding.hpp"
 
@@ -52,7 +53,8 @@ inline std::string kind_place_and_time(const Finding& finding) {
 
 /// The kind, the place, the time, the value, the limit and the hint of a finding.
 inline std::string finding_with_hint(const Finding& finding) {
-  return kind_place_and_time(finding) + ": " + amount_text(finding) + "; " + finding.hint;
+  return text::two_sentences(kind_place_and_time(finding) + ": " + amount_text(finding),
+                             finding.hint);
 }
 
 }  // namespace ayumi

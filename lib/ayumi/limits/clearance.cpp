@@ -116,8 +116,8 @@ const Limit& clearance_limit() {
       .findings = {{.kind = FindingKind::self_collision,
                     .unit = "m",
                     .tolerance = kClearanceTolerance,
-                    .meaning = "clearance between two bodies: an error when they overlap, a "
-                               "warning when the clearance is below the tolerance",
+                    .meaning = "clearance between two bodies. An overlap is an error; a clearance "
+                               "below the tolerance is a warning",
                     .figure = {.key = "min_self_clearance_m",
                                .label = "least clearance of the links",
                                .unit = "mm",

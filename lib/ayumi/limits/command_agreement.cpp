@@ -140,15 +140,15 @@ Advice vertical_force_advice(const JudgedMotion&, const FindingWindow& window) {
 
 Advice point_mass_advice(const JudgedMotion&, const FindingWindow& window) {
   return "the point-mass model would have a ZMP error of " + in_mm(window.worst.value) +
-         " here; nothing has to change, because Ayumi computes the motion with the full model";
+         " here. Nothing has to change, because Ayumi computes the motion with the full model";
 }
 
 std::string cog_infeasibility(const Finding& f, double) {
-  return "the COG of the posture is " + in_mm(f.worst) + " from the trusted COG";
+  return "the COG of the posture is " + in_mm(f.worst) + " away from the commanded COG";
 }
 
 std::string zmp_infeasibility(const Finding& f, double) {
-  return "the ZMP of the motion is " + in_mm(f.worst) + " from the trusted ZMP";
+  return "the ZMP of the motion is " + in_mm(f.worst) + " away from the commanded ZMP";
 }
 
 }  // namespace
@@ -190,7 +190,7 @@ const Limit& command_agreement_limit() {
             .unit = "m g",
             .tolerance = kForceTolerance,
             .meaning = "difference between the vertical force that the motion needs and the "
-                       "commanded vertical force; the tolerance is a share of the weight",
+                       "commanded vertical force. The tolerance is a share of the weight",
             .figure = {.key = "max_fz_residual_N",
                        .label = "largest vertical force residual",
                        .unit = "N",
@@ -205,8 +205,8 @@ const Limit& command_agreement_limit() {
             .tolerance = kPointMassTolerance,
             .meaning =
                 "distance between the ZMP of the point-mass model (14)(15) and the commanded ZMP. "
-                "This distance shows how well the point-mass model describes the motion; it is "
-                "never an error",
+                "This distance shows how well the point-mass model describes the motion. The "
+                "finding is never an error",
             .figure = {.key = "max_point_mass_gap_m",
                        .label = "largest ZMP error of the point-mass model",
                        .unit = "mm",

@@ -176,20 +176,22 @@ const char* rest_unit(const JudgedMotion& motion, const Violation& v) {
   return joint_unit(motion, v, "rad/s", "m/s");
 }
 
-/// The text of a refusal, such as "`export` refuses the table, because the servo target of l_knee,
-/// which leads the posture by ...".
-std::string refused_text(const JudgedMotion& motion, const Violation& v) {
+/// The text of a refusal, such as "`export` refuses the table, because the servo target of l_knee
+/// moves ... (the target is 3.61 ms ahead of the posture)".
+std::string refused_text(const JudgedMotion& motion, const Violation& v, const std::string& fault) {
   const double lag = velocity_lead(motion.limits)[v.item];
   return "`export` refuses the table, because the servo target of " +
-         motion.model.dofs()[v.item].name +
-         (lag > 0 ? ", which leads the posture by " + text::brief(1e3 * lag, 3) + " ms," : "");
+         motion.model.dofs()[v.item].name + " " + fault +
+         (lag > 0 ? " (the target is " + text::brief(1e3 * lag, 3) + " ms ahead of the posture)"
+                  : "");
 }
 
 Advice target_step_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const Violation& v = window.worst;
-  return {refused_text(motion, v) + " moves " +
-              text::fixed(100 * (std::abs(v.value / v.limit) - 1), 1) + " % further in " +
-              text::brief(1e3 * motion.series.dt, 3) + " ms than the motor can follow",
+  return {refused_text(motion, v,
+                       "moves " + text::fixed(100 * (std::abs(v.value / v.limit) - 1), 1) +
+                           " % further in " + text::brief(1e3 * motion.series.dt, 3) +
+                           " ms than the motor can follow"),
           "move " + motion.model.dofs()[v.item].name +
               " more slowly, or accelerate this joint more gently here",
           kOrRepair};
@@ -202,7 +204,7 @@ Advice table_position_advice(const JudgedMotion& motion, const FindingWindow& wi
   const std::string amount = v.detail == kInCounts ? text::fixed(beyond, 0) + " counts"
                              : dof.prismatic       ? text::brief(1e3 * beyond, 3) + " mm"
                                                    : angle_size(beyond, motion.degrees, 3);
-  return {refused_text(motion, v) + " is " + amount + " beyond its range",
+  return {refused_text(motion, v, "is " + amount + " beyond its range"),
           "move " + dof.name +
               " back by this amount, or let the joint reverse its direction more gently",
           kOrRepair};
@@ -210,16 +212,19 @@ Advice table_position_advice(const JudgedMotion& motion, const FindingWindow& wi
 
 Advice rest_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const Violation& v = window.worst;
-  return {refused_text(motion, v) + " moves at the " + (window.first == 0 ? "beginning" : "end") +
-              " of the table",
-          motion.model.dofs()[v.item].name + " has to " + (window.first == 0 ? "start" : "stop") +
-              " gently and at rest, for example with a segment of minimum_jerk",
-          ""};
+  const bool begins = window.first == 0;
+  return {
+      refused_text(motion, v,
+                   std::string("moves at the ") + (begins ? "beginning" : "end") + " of the table"),
+      "let " + motion.model.dofs()[v.item].name +
+          (begins ? " start gently from rest" : " stop gently and come to rest") +
+          ", for example with a segment of minimum_jerk",
+      ""};
 }
 
 std::string target_step_infeasibility(const Finding& f, double violation) {
   return "the servo target of " + f.where + " changes by " + ratio_text(violation) +
-         " times the step that `export` accepts";
+         " times the step from row to row that `export` accepts";
 }
 
 std::string table_position_infeasibility(const Finding& f, double) {
@@ -231,8 +236,8 @@ std::string table_position_infeasibility(const Finding& f, double) {
 
 std::string rest_infeasibility(const Finding& f, double) {
   const ShownUnit unit = shown_unit(f.unit, f.in_degrees);
-  return "the servo target of " + f.where + " has " + text::brief(f.worst * unit.scale, 3) + " " +
-         unit.name + " at an end of the motion, but `export` accepts at most " +
+  return "the servo target of " + f.where + " moves at " + text::brief(f.worst * unit.scale, 3) +
+         " " + unit.name + " when the motion begins or ends, but `export` accepts at most " +
          text::brief(f.limit * unit.scale, 3) + " " + unit.name;
 }
 
@@ -240,47 +245,47 @@ std::string rest_infeasibility(const Finding& f, double) {
 
 const Limit& exported_table_limit() {
   static const Limit limit = {
-      .findings =
-          {{.kind = FindingKind::table_step,
-            .limit_class = LimitClass::rate,
-            .unit = "1",
-            .tolerance = kExport.step_share,
-            .meaning =
-                "step of the servo target from row to row of the table, divided by "
-                "the step that `export` accepts; a tolerance above the default has no effect",
-            .figure = {.key = "max_table_step_ratio",
-                       .label = "largest step of the exported table",
-                       .unit = "% of the step that `export` accepts",
-                       .scale = 100,
-                       .line = 22},
-            .repair = {.is_of_one_joint = true},
-            .finding_unit = table_unit,
-            .place = joint_place,
-            .advice = target_step_advice,
-            .infeasibility = target_step_infeasibility,
-            .holds_at = step_holds},
-           {.kind = FindingKind::table_position,
-            .limit_class = LimitClass::rate,
-            .unit = "rad",
-            .tolerance = kExport.beyond_range,
-            .meaning = "servo target beyond the range of the joint, which `export` "
-                       "refuses; a tolerance above the default has no effect",
-            .repair = {.is_of_one_joint = true},
-            .finding_unit = table_unit,
-            .place = joint_place,
-            .advice = table_position_advice,
-            .infeasibility = table_position_infeasibility},
-           {.kind = FindingKind::table_rest,
-            .limit_class = LimitClass::rate,
-            .unit = "rad/s",
-            .tolerance = kExport.rest_speed,
-            .meaning = "speed of the servo target at the ends of the table, which has to "
-                       "begin and end at rest; a tolerance above the default has no effect",
-            .repair = {.is_of_one_joint = true},
-            .finding_unit = rest_unit,
-            .place = joint_place,
-            .advice = rest_advice,
-            .infeasibility = rest_infeasibility}},
+      .findings = {{.kind = FindingKind::table_step,
+                    .limit_class = LimitClass::rate,
+                    .unit = "1",
+                    .tolerance = kExport.step_share,
+                    .meaning = "step of the servo target from row to row of the table, divided by "
+                               "the largest step that `export` accepts. A tolerance above the "
+                               "default has no effect",
+                    .figure = {.key = "max_table_step_ratio",
+                               .label = "largest step of the exported table",
+                               .unit = "% of the step that `export` accepts",
+                               .scale = 100,
+                               .line = 22},
+                    .repair = {.is_of_one_joint = true},
+                    .finding_unit = table_unit,
+                    .place = joint_place,
+                    .advice = target_step_advice,
+                    .infeasibility = target_step_infeasibility,
+                    .holds_at = step_holds},
+                   {.kind = FindingKind::table_position,
+                    .limit_class = LimitClass::rate,
+                    .unit = "rad",
+                    .tolerance = kExport.beyond_range,
+                    .meaning =
+                        "servo target beyond the range of the joint. `export` refuses such a "
+                        "target. A tolerance above the default has no effect",
+                    .repair = {.is_of_one_joint = true},
+                    .finding_unit = table_unit,
+                    .place = joint_place,
+                    .advice = table_position_advice,
+                    .infeasibility = table_position_infeasibility},
+                   {.kind = FindingKind::table_rest,
+                    .limit_class = LimitClass::rate,
+                    .unit = "rad/s",
+                    .tolerance = kExport.rest_speed,
+                    .meaning = "speed of the servo target at the ends of the table. A table has to "
+                               "begin and end at rest. A tolerance above the default has no effect",
+                    .repair = {.is_of_one_joint = true},
+                    .finding_unit = rest_unit,
+                    .place = joint_place,
+                    .advice = rest_advice,
+                    .infeasibility = rest_infeasibility}},
       .look_ahead = make_table,
       .judge_motion = judge_table,
       .place_rows = place_table_rows};

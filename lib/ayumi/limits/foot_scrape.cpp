@@ -212,16 +212,17 @@ Advice scrape_advice(const JudgedMotion&, const FindingWindow& window) {
   const Violation& v = window.worst;
   const std::string foot = name_of(foot_of(v));
   const double wanted = 0.01 * std::ceil(1e5 * (v.limit - v.value));  // in mm
-  return {"the swinging " + foot + " sole scrapes the ground: a corner moves along it " +
-              height_text(v.value) + ", and must be at least " + text::fixed(1000 * v.limit, 2) +
-              " mm above it",
+  return {"the swinging " + foot + " sole scrapes the ground. One of its corners is " +
+              height_text(v.value) + " while it moves along the ground, but it must be at least " +
+              text::fixed(1000 * v.limit, 2) + " mm above the ground",
           "lift the foot " + text::fixed(wanted, 2) +
               " mm higher there, for example with a higher \"lift\" of this swing",
           kOrRepair};
 }
 
 std::string scrape_infeasibility(const Finding& f, double) {
-  return "the swinging " + f.where + " sole scrapes the ground, " + height_text(f.worst);
+  return "a corner of the swinging " + f.where + " sole moves along the ground and is " +
+         height_text(f.worst);
 }
 
 }  // namespace

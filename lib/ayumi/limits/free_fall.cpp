@@ -105,8 +105,8 @@ bool free_fall_holds(JudgedMotion& motion, const Violation& v, double pace) {
 Advice free_fall_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const double dt = motion.series.dt;
   if (window.worst.item == kMotionLeaps)
-    return {"the COG leaps by " + in_mm(window.worst.value * dt * dt) +
-                " where the flight begins or ends, and no force can do this",
+    return {"the position of the COG jumps by " + in_mm(window.worst.value * dt * dt) +
+                " where the flight begins or ends, and no force can move the COG so fast",
             "make the COG keys continuous there", ""};
   return {"the COG must fall freely during the whole flight",
           "remove the COG keys inside the flight", ""};

@@ -98,7 +98,7 @@ Advice friction_advice(const JudgedMotion& motion, const FindingWindow& window) 
               text::fixed(v.value * motion.friction, 2) + ", but " +
               (v.value > 1 ? "the ground has " + text::fixed(motion.friction, 2)
                            : "the tolerance allows " + text::fixed(v.limit * motion.friction, 2)),
-          slow_down_text(std::sqrt(v.value / v.limit)) + " or take shorter steps", ""};
+          slow_down_text(std::sqrt(v.value / v.limit)) + ", or take shorter steps", ""};
 }
 
 std::string friction_infeasibility(const Finding& f, double violation) {

@@ -83,16 +83,17 @@ const char* heat_unit(const JudgedMotion& motion, const Violation& v) {
 Advice heat_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const Violation& v = window.worst;
   const std::string unit = std::string(" ") + heat_unit(motion, v);
-  return {motion.model.dofs()[v.item].name + " needs " + text::brief(v.value, 3) + unit +
-              " on average, but its motor bears only " + text::brief(v.limit, 3) + unit +
-              " without a time limit",
-          "add a rest, or shorten the lever of the weight" + straighter_leg(motion.model, v.item),
-          ""};
+  return {
+      motion.model.dofs()[v.item].name + " needs " + text::brief(v.value, 3) + unit +
+          " on average, but its motor can give only " + text::brief(v.limit, 3) + unit +
+          " without a time limit",
+      "add a rest, or shorten the lever arm of the weight" + straighter_leg(motion.model, v.item),
+      ""};
 }
 
 std::string heat_infeasibility(const Finding& f, double violation) {
-  return "the mean torque of " + f.where + " over the motor's thermal window reaches " +
-         ratio_text(violation) + " times its continuous limit";
+  return "the mean torque of " + f.where + " in the thermal window of its motor reaches " +
+         ratio_text(violation) + " times the continuous limit";
 }
 
 }  // namespace
@@ -104,7 +105,7 @@ const Limit& heat_limit() {
                     .unit = "1",
                     .tolerance = kWholeContinuousTorque,
                     .meaning = "root mean square of the motor torque in the thermal window of the "
-                               "motor, as a share of the continuous limit; the finding is only a "
+                               "motor, as a share of the continuous limit. The finding is only a "
                                "warning if the motion is shorter than the window",
                     .figure = {.key = "max_continuous_torque_ratio",
                                .label = "largest continuous torque",

@@ -61,7 +61,7 @@ const Limit& joint_acceleration_limit() {
                     .limit_class = LimitClass::rate,
                     .unit = "rad/s^2",
                     .tolerance = kRoughAcceleration,
-                    .meaning = "acceleration of a joint; the finding is only a warning, because it "
+                    .meaning = "acceleration of a joint. The finding is only a warning, because it "
                                "shows that a motion is rough",
                     .figure = {.key = "max_joint_acceleration_rad_s2",
                                .label = "largest joint acceleration",

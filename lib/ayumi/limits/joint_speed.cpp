@@ -47,7 +47,7 @@ const char* speed_unit(const JudgedMotion& motion, const Violation& v) {
 
 Advice speed_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const Violation& v = window.worst;
-  return slow_down_text(std::abs(v.value / v.limit)) + " or turn " +
+  return slow_down_text(std::abs(v.value / v.limit)) + ", or turn " +
          motion.model.dofs()[v.item].name + " through a smaller angle";
 }
 

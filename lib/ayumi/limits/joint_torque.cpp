@@ -86,13 +86,13 @@ const char* torque_unit(const JudgedMotion& motion, const Violation& v) {
 Advice torque_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const Violation& v = window.worst;
   if (motion.limits.lacks_motor(v.item))
-    return motion.model.dofs()[v.item].name +
-           " has no motor (kp of its servo is 0), but the motion needs one there; if the joint has "
-           "a motor, state kp in the sidecar";
+    return "the motion needs a motor at " + motion.model.dofs()[v.item].name +
+           ", but this joint has none (kp of its servo is 0). If the joint has a motor, state kp "
+           "in the sidecar";
   return "lower the load on " + motion.model.dofs()[v.item].name +
          ". If the inertia is the cause, " +
          slow_down_text(std::sqrt(std::abs(v.value / v.limit))) +
-         ". If the weight is the cause, shorten the lever of the weight" +
+         ". If the weight is the cause, shorten the lever arm of the weight" +
          straighter_leg(motion.model, v.item);
 }
 

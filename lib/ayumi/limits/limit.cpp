@@ -85,7 +85,7 @@ Tolerances tolerances(const CheckOptions& options) {
                                  text::suggestion(name, finding_kind_names()));
     if (!(std::abs(value) <= kLargestNumber))
       fail(ErrorCode::usage, "tolerance '" + name + "': " + text::exact(value) +
-                                 " is out of range; its size must be at most " +
+                                 " is out of range. Its size must be at most " +
                                  text::brief(kLargestNumber));
     result[*kind] = value;
   }

@@ -71,13 +71,13 @@ Advice motor_acceleration_advice(const JudgedMotion& motion, const FindingWindow
   return {"the motor of " + motion.model.dofs()[v.item].name +
               " cannot accelerate its own rotor so fast",
           slow_down_text(std::sqrt(std::abs(v.value / v.limit))) +
-              " or make the motion of the joint smoother here",
+              ", or make the motion of the joint smoother here",
           ""};
 }
 
 std::string motor_acceleration_infeasibility(const Finding& f, double violation) {
   return "the acceleration of " + f.where + " reaches " + ratio_text(violation) +
-         " times what its motor can give to its own rotor";
+         " times the acceleration that its motor can give to its own rotor";
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ bool normal_force_holds(JudgedMotion& motion, const Violation& v, double pace) {
 const char* normal_force_unit(const JudgedMotion&, const Violation&) { return "N"; }
 
 Advice normal_force_advice(const JudgedMotion&, const FindingWindow&) {
-  return {"the ground cannot pull",
+  return {"the ground would have to pull the robot down, but the ground can only push",
           "let the COG accelerate downwards by less than g, or plan a flight phase", ""};
 }
 
@@ -67,9 +67,9 @@ const Limit& normal_force_limit() {
                     .limit_class = LimitClass::force,
                     .unit = "m g",
                     .tolerance = kLeastNormalShare,
-                    .meaning = "normal ground force in contact: an error when the ground would "
-                               "have to pull, a warning when the force is below the "
-                               "tolerance; the tolerance is a share of the weight",
+                    .meaning = "normal ground force in contact. A pull of the ground is an error; "
+                               "a force below the tolerance is a warning. The tolerance is a share "
+                               "of the weight",
                     .finding_unit = normal_force_unit,
                     .place = support_place,
                     .advice = normal_force_advice,

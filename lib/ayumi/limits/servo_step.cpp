@@ -79,7 +79,7 @@ const Limit& servo_step_limit() {
             .tolerance = kWholeStep,
             .meaning =
                 "change of the joint angle in one servo period, divided by the change that the "
-                "speed limit allows; the step is reported only where the planned speed is within "
+                "speed limit allows. The step is reported only where the planned speed is within "
                 "its limit",
             .figure = {.key = "max_servo_step_ratio",
                        .label = "largest step in a servo period",

@@ -116,8 +116,9 @@ Advice support_advice(const JudgedMotion&, const FindingWindow& window) {
   const std::string whose = v.item == kMotionZmp ? "the ZMP of the motion" : "the commanded ZMP";
   if (v.value < 0)
     return {whose + " is " + in_mm(v.value) + " outside the support",
-            "reduce the displacement of the COG by this distance, or give the step more time",
-            kOrRepair};
+            // If a slower motion does not help, the remedy must not name more time.
+            "reduce the displacement of the COG by this distance",
+            std::string(", or give the step more time") + kOrRepair};
   return {whose + " is only " + in_mm(v.value) + " inside the support, but the wanted margin is " +
               in_mm(v.limit),
           "reduce the displacement of the COG by the difference", kOrRepair};
@@ -137,8 +138,8 @@ const Limit& support_limit() {
             .unit = "m",
             .tolerance = kLeastMargin,
             .meaning =
-                "distance from the ZMP to the edge of the support polygon: an error when the ZMP "
-                "is outside, a warning when it is inside by less than the tolerance",
+                "distance from the ZMP to the edge of the support polygon. A ZMP outside the "
+                "polygon is an error; a distance inside that is below the tolerance is a warning",
             .figure = {.key = "min_zmp_margin_m",
                        .label = "least ZMP margin",
                        .unit = "mm",

@@ -268,7 +268,7 @@ void place_swing_rows(RowSite& site) {
 Advice landing_advice(const JudgedMotion&, const FindingWindow& window) {
   return "let the " + std::string(name_of(foot_of(window.worst))) +
          " foot come down more slowly than " + text::fixed(window.worst.limit, 2) +
-         " m/s: use a lower lift or a longer step";
+         " m/s: use a lower lift, or give the swing more time";
 }
 
 }  // namespace
@@ -284,7 +284,7 @@ const Limit& swing_foot_limit() {
                     .limit_class = LimitClass::rate,
                     .unit = "m/s",
                     .tolerance = kLandingTolerance,
-                    .meaning = "speed of a sole towards the ground when the sole lands; the "
+                    .meaning = "speed of a sole towards the ground when the sole lands. The "
                                "finding is only a warning",
                     .figure = {.key = "max_landing_speed_m_s",
                                .label = "largest speed of a landing sole",

@@ -499,8 +499,8 @@ SafeTable make_safe(const RobotModel& model, ReferenceTrajectory reference,
     fail(ErrorCode::bad_pattern,
          "the joint table begins so far from posture '" + options.from +
              "' that the ramp to its first row would take " + text::brief(plan.duration) +
-             " s (limit " + text::brief(kLongestRamp) +
-             " s); correct the angles of the first row, which may be in another unit");
+             " s. At most " + text::brief(kLongestRamp) +
+             " s are allowed. Correct the angles of the first row. Perhaps their unit is wrong");
   SafeTable result;
   result.first = plan.ramp;
   result.report = report_on(model, targets, plan, options);

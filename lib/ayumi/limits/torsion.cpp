@@ -109,7 +109,7 @@ bool torsion_holds(JudgedMotion& motion, const Violation& v, double pace) {
 Advice torsion_advice(const JudgedMotion&, const FindingWindow& window) {
   return {"the foot would turn on the ground",
           slow_down_text(std::sqrt(window.worst.value / window.worst.limit)) +
-              " or swing the arms against the legs",
+              ", or swing the arms against the legs",
           ""};
 }
 
@@ -127,13 +127,13 @@ const Limit& torsion_limit() {
                     .unit = "1",
                     .tolerance = kWholeMoment,
                     .meaning = "moment about the normal of the ground at the ZMP, divided "
-                               "by the largest moment that friction can resist when the pressure "
-                               "under the soles is even",
+                               "by the largest moment that friction can resist. This largest "
+                               "moment is computed for an even pressure under the soles",
                     .figure = {.key = "max_yaw_ratio",
                                .label = "largest yaw moment",
                                .unit = "% of the moment that friction resists",
                                .scale = 100,
-                               .share_name = "yaw",
+                               .share_name = "yaw moment",
                                .line = 12},
                     .place = support_place,
                     .advice = torsion_advice,

@@ -149,11 +149,13 @@ class Doctor {
       const Body& body = model_.bodies()[link.body];
       if (body.inertia.mass == 0 && body.name == link.name)
         warn(Subject::link, link.name,
-             "no mass is stated, although a joint moves the link; Ayumi takes such a link for a "
-             "frame between two axes");
+             "no mass is stated, although a joint moves the link; Ayumi takes such a link as a "
+             "frame "
+             "between two axes");
       else if (!link.visuals.empty() || !link.collisions.empty())
         warn(Subject::link, link.name,
-             "a shape is stated but no mass; the link that carries this one must contain its mass");
+             "a shape is stated, but no mass; the mass of this part must be in the link that "
+             "carries it");
       return;
     }
     examine_tensor(link);
@@ -266,8 +268,8 @@ class Doctor {
     if (std::isinf(limits.speed[index]))
       suspect("no speed limit is stated");
     else if (!dof.prismatic && limits.speed[index] > kFastest)
-      suspect("speed limit " + text::brief(limits.speed[index]) +
-              " rad/s is faster than servos are; is this a placeholder?");
+      suspect("the speed limit of " + text::brief(limits.speed[index]) +
+              " rad/s is higher than the speed of any servo; is this a placeholder?");
     if (std::isinf(limits.peak_torque[index])) suspect("no torque limit is stated");
     if (!limits.has_servo[static_cast<size_t>(index)])
       suspect("no servo constants are stated; give kp and kd");
@@ -352,12 +354,13 @@ class Doctor {
     if (conform == 0 || against == 0) return;
     const bool are_same_here = conform >= against;
     warn(Subject::joint, are_same_here ? same : opposite,
-         std::string("one of the two encoder signs may be wrong: in a symmetric movement, the left "
-                     "and the right count change in ") +
-             (are_same_here ? "the same direction here, but in opposite directions"
-                            : "opposite directions here, but in the same direction") +
-             " on the " + std::to_string(std::max(conform, against)) +
-             " other pairs of joints; test each of these joints alone before you replay a table");
+         std::string(
+             "one of the two encoder signs may be wrong. In a symmetric movement, the counts "
+             "of the left and the right joint change in ") +
+             (are_same_here ? "the same direction, but in opposite directions"
+                            : "opposite directions, but in the same direction") +
+             " on " + std::to_string(std::max(conform, against)) +
+             " other pairs of joints. Test each of these joints alone before you replay a table");
   }
 
   void compare_links(const Link& left, const Link& right) {

@@ -186,14 +186,15 @@ void require_masses(const RobotDescription& robot, const std::vector<Body>& bodi
       std::find_if(robot.links.begin(), robot.links.end(),
                    [&](const LinkDescription& link) { return link.name == first; });
   massless.erase(massless.begin());
-  complain_urdf(robot, "link " + first,
-                std::string(description->has_inertial ? "its mass is 0" : "it has no <inertial>") +
-                    (first == bodies[0].name ? " although it is the root of a robot that moves"
-                                             : " although a joint moves it") +
-                    "; give it a mass and an inertia" +
-                    (massless.empty()
-                         ? ""
-                         : " (the same holds for " + text::join_first(massless, kMostNamed) + ")"));
+  complain_urdf(
+      robot, "link " + first,
+      std::string(description->has_inertial ? "the mass of this link is 0"
+                                            : "this link has no <inertial>") +
+          (first == bodies[0].name ? " although it is the root of a robot that moves"
+                                   : " although a joint moves this link") +
+          "; give the link a mass and an inertia" +
+          (massless.empty() ? ""
+                            : ", and also the links " + text::join_first(massless, kMostNamed)));
 }
 
 double value_or(const std::map<std::string, double>& map, const std::string& key, double other) {
@@ -360,9 +361,9 @@ const Sole& RobotModel::sole(Side side) const {
                      "the robot has no soles; give /soles/left and /soles/right" +
                          std::string(description_.missing_meshes.empty()
                                          ? ""
-                                         : ", or find the missing meshes, which `ayumi inspect` "
-                                           "lists: they may show the feet (--package-path names "
-                                           "the folder with the packages)"));
+                                         : ". Or find the missing meshes, because they may show "
+                                           "the feet: `ayumi inspect` lists these meshes, and "
+                                           "--package-path names the folder with the packages"));
   return soles_[static_cast<int>(side)];
 }
 

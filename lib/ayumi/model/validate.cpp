@@ -46,7 +46,7 @@ void validate_inertia(const RobotDescription& robot, const LinkDescription& link
   const std::string where = "link " + link.name;
   const Inertia& inertia = link.inertia;
   if (!std::isfinite(inertia.mass) || !inertia.com.allFinite() || !inertia.about_com.allFinite())
-    complain_urdf(robot, where, "its inertia holds a number that is not finite; correct it");
+    complain_urdf(robot, where, "the inertia has a number that is not finite; correct this number");
   if (inertia.mass < 0)
     complain_urdf(robot, where,
                   "mass " + text::exact(inertia.mass) + " kg is negative; give the link its mass");
@@ -89,7 +89,7 @@ void validate_joint_numbers(const RobotDescription& robot, const JointDescriptio
   if (!joint.origin.matrix().allFinite() || !joint.axis.allFinite() ||
       !std::isfinite(joint.lower + joint.upper + joint.velocity + joint.effort + joint.damping +
                      joint.friction + joint.mimic_multiplier + joint.mimic_offset))
-    complain_urdf(robot, where, "a number of this joint is not finite; correct it");
+    complain_urdf(robot, where, "a number of this joint is not finite; correct this number");
   if (joint.origin.translation().cwiseAbs().maxCoeff() > kLargestLength)
     complain_urdf(robot, where,
                   "its origin lies farther than " + text::exact(kLargestLength) +
@@ -125,14 +125,15 @@ void validate_mimic(const RobotDescription& robot, const JointDescription& joint
                         text::suggestion(driver->mimic, joint_names(robot)));
     driver = &*next;
     if (driver == &joint)
-      complain_urdf(robot, where,
-                    "this joint mimics itself through other joints; break the circle");
+      complain_urdf(
+          robot, where,
+          "this joint mimics itself through other joints; change <mimic> of one of these joints");
     if (steps > kLongestMimicChain)
       complain_urdf(robot, where,
-                    "this joint mimics another one through more than " +
+                    "this joint mimics another joint through more than " +
                         std::to_string(kLongestMimicChain) +
-                        " joints, or these mimic each other in a circle; name the joint that moves "
-                        "by itself");
+                        " joints, or the joints mimic each other in a circle; in <mimic>, name the "
+                        "joint that moves by itself");
   }
   if (driver->type == JointType::fixed || driver->type == JointType::floating)
     complain_urdf(robot, where,

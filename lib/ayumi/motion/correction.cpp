@@ -66,7 +66,7 @@ void require_track(const CorrectionTrack& track) {
   if (track.coefficients.cols() != columns)
     fail(ErrorCode::bad_pattern,
          "correction: there are " + std::to_string(track.coefficients.cols()) +
-             " columns, but base and joints need " + std::to_string(columns));
+             " columns, but the base and the joints need " + std::to_string(columns));
   if (!(track.spacing > 0) || !track.coefficients.allFinite() || !std::isfinite(track.begin))
     fail(ErrorCode::bad_pattern,
          "correction: the spacing must be above 0 and every coefficient a finite number");
@@ -135,9 +135,10 @@ CommandSeries apply_correction(const RobotModel& model, const CommandSeries& ser
     sample.dcog = data.dcog;
     sample.ddcog = full.force / model.mass() - Vector3d(0, 0, kGravity);
   }
-  for (const char* name : {"cog", "zmp", "fz"}) result.origin[name] = "of the corrected full model";
-  result.origin["joints"] += "; corrected";
-  result.origin["base"] += "; corrected";
+  for (const char* name : {"cog", "zmp", "fz"})
+    result.origin[name] = "computed from the full model of the corrected motion";
+  result.origin["joints"] += ", then corrected";
+  result.origin["base"] += ", then corrected";
   return result;
 }
 

@@ -38,8 +38,8 @@ int find_joint(const RobotModel& model, const std::string& joint, const SourcePl
     if (each.name == joint)
       fail_unknown_name(place,
                         "joint '" + joint + "' " +
-                            (each.mimic.empty() ? "does not move; remove the key"
-                                                : "follows '" + each.mimic + "' (mimic); set '" +
+                            (each.mimic.empty() ? "does not move. Remove the key"
+                                                : "follows '" + each.mimic + "' (mimic). Set '" +
                                                       each.mimic + "' in place of this joint"));
   fail_unknown_name(place, "the robot '" + model.name() + "' has no joint '" + joint + "'" +
                                text::suggestion(joint, model.dof_names()));
@@ -87,7 +87,7 @@ double default_cog_height(const RobotModel& model, const Pattern& pattern) {
   if (pattern.cog_height != 0) {
     if (!(pattern.cog_height > 0) || !std::isfinite(pattern.cog_height))
       fail(ErrorCode::bad_pattern, in_file(pattern, "/defaults/cog_height"),
-           text::exact(pattern.cog_height) + " m is not above 0");
+           "the COG height is " + text::exact(pattern.cog_height) + " m, but must be above 0 m");
     return pattern.cog_height;
   }
   RobotState state = model.rest_state();

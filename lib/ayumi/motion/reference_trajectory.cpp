@@ -33,9 +33,10 @@ ReferenceTrajectory resampled(const ReferenceTrajectory& table, double dt) {
   constexpr double kMostRows = 4e6;
   const double rows = static_cast<double>(table.rows.size()) * table.dt / dt;
   if (!(dt > 0 && rows <= kMostRows && std::isfinite(dt)))
-    fail(ErrorCode::usage, "a table cannot have rows every " + text::exact(dt) +
-                               " s; the time must be above 0, and the table may have at most " +
-                               text::brief(kMostRows) + " rows");
+    fail(ErrorCode::usage,
+         "a table cannot have rows every " + text::exact(dt) +
+             " s. The time between rows must be above 0, and a table may have at most " +
+             text::brief(kMostRows) + " rows");
   if (table.rows.empty() || std::abs(dt - table.dt) < kOnRow * table.dt) return table;
   ReferenceTrajectory result = table;
   result.dt = dt;

@@ -30,7 +30,8 @@ inline std::vector<std::string> words_of(const TableCaution& caution) {
   if (!caution.unfit.empty())
     words.push_back("the table is not for a robot, because " + caution.unfit);
   if (!caution.disturbances.empty())
-    words.push_back("the table contains the reactions to disturbances: " + caution.disturbances);
+    words.push_back("the table contains the reactions of the robot to disturbances: " +
+                    caution.disturbances);
   return words;
 }
 

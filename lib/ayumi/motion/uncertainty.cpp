@@ -46,24 +46,29 @@ const std::vector<UncertainKindInfo>& uncertain_kinds() {
       {Kind::inertia, "inertia", Target::link, false, false, 0, "factor on the inertia"},
       {Kind::friction, "friction", Target::none, false, false, 0,
        "friction coefficient of the ground"},
-      {Kind::sole_stiffness, "sole_stiffness", Target::none, false, false, 0, "factor"},
-      {Kind::sole_damping, "sole_damping", Target::none, false, false, 0, "factor"},
+      {Kind::sole_stiffness, "sole_stiffness", Target::none, false, false, 0,
+       "factor on the stiffness"},
+      {Kind::sole_damping, "sole_damping", Target::none, false, false, 0, "factor on the damping"},
       {Kind::slope, "slope", Target::none, true, true, none, "angle of the ground, rad"},
-      {Kind::bumps, "bumps", Target::none, false, false, 0, "depth of hollows of the ground, m"},
+      {Kind::bumps, "bumps", Target::none, false, false, 0,
+       "depth of the hollows in the ground, m"},
       {Kind::servo_kp, "servo_kp", Target::joint, false, false, 0, "factor on the stiffness"},
       {Kind::servo_kd, "servo_kd", Target::joint, false, false, 0, "factor on the damping"},
       {Kind::servo_friction, "servo_friction", Target::joint, false, false, 0,
        "additional dry friction, N m"},
-      {Kind::servo_delay, "servo_delay", Target::joint, false, false, 0, "delay, s"},
-      {Kind::backlash, "backlash", Target::joint, false, true, 0, "whole play, rad"},
-      {Kind::encoder_offset, "encoder_offset", Target::joint, false, true, none, "angle, rad"},
+      {Kind::servo_delay, "servo_delay", Target::joint, false, false, 0, "delay of the servo, s"},
+      {Kind::backlash, "backlash", Target::joint, false, true, 0, "whole play of the gear, rad"},
+      {Kind::encoder_offset, "encoder_offset", Target::joint, false, true, none,
+       "angle of the offset, rad"},
       {Kind::sensor_noise, "sensor_noise", Target::none, false, false, 0,
        "factor on the noise of all sensors"},
-      {Kind::attitude_bias, "attitude_bias", Target::none, true, true, none, "angle, rad"},
-      {Kind::gyro_bias, "gyro_bias", Target::none, true, true, none, "rate, rad/s"},
+      {Kind::attitude_bias, "attitude_bias", Target::none, true, true, none,
+       "angle of the bias, rad"},
+      {Kind::gyro_bias, "gyro_bias", Target::none, true, true, none, "rate of the bias, rad/s"},
       {Kind::load_bias, "load_bias", Target::none, false, false, none,
        "offset of every load cell, N"},
-      {Kind::sensor_latency, "sensor_latency", Target::none, false, false, 0, "latency, s"},
+      {Kind::sensor_latency, "sensor_latency", Target::none, false, false, 0,
+       "latency of the sensors, s"},
       {Kind::payload, "payload", Target::link, false, false, 0, "mass of a load, kg"},
   };
   return kinds;
@@ -73,7 +78,7 @@ const UncertainKindInfo& info(UncertainKind kind) {
   using Target = UncertainKindInfo::Target;
   constexpr double none = -std::numeric_limits<double>::infinity();
   static const UncertainKindInfo push = {
-      UncertainKind::push_size, "push", Target::none, false, false, none, "of a push"};
+      UncertainKind::push_size, "push", Target::none, false, false, none, "size of a push"};
   for (const UncertainKindInfo& each : uncertain_kinds())
     if (each.kind == kind) return each;
   return push;

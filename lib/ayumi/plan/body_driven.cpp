@@ -67,25 +67,26 @@ namespace {
     for (const int dof : job.ik.coupled()) shared.push_back(job.model.dofs()[dof].name);
     fail(ErrorCode::bad_pattern, place,
          where + " foot is turned " + degrees(solution.turned) +
-             " away from its attitude, but at most " + degrees(allowed) + " are allowed. " +
+             " away from its planned direction, but at most " + degrees(allowed) +
+             " are allowed. " +
              (shared.empty() ? "At this place, the legs cannot turn the sole as it is planned"
                              : "Both legs move with " + text::join(shared, ", ") +
                                    ", so the feet cannot turn relative to each other") +
-             ". Turn less in each step, or turn the trunk (\"torso\" of a key) over feet "
-             "that stay");
+             ". Turn less in each step, or let the feet stay and turn the trunk (with "
+             "\"torso\" of a key)");
   }
   if (job.ik.lacks_joints() && !solution.knee_flipped)
     fail(ErrorCode::bad_pattern, place,
          where + " foot is out of reach by " + millimetres(solution.missing) + ", but at most " +
              millimetres(allowed) +
-             " are allowed. A leg has fewer than six joints, so with level soles the COG cannot "
-             "move as far to the side as with six joints. Lower the COG height, or make the COG "
-             "sway less: shorten the step period, or move the ZMP towards the other foot (new walk "
+             " are allowed. Each leg has fewer than six joints, so the COG cannot move far to the "
+             "side while the soles are level. Lower the COG height, or make the COG sway less: "
+             "shorten the step period, or move the ZMP towards the other foot (new walk "
              "--zmp-inwards)");
   const double height = sample.cog.z() - ground;
   const std::string remedy =
-      std::string("; ") + (legs_are_folded(job.model, job.pattern, height) ? "raise" : "lower") +
-      " the COG height (here " + text::fixed(height, 4) + " m above the soles)" +
+      std::string(". ") + (legs_are_folded(job.model, job.pattern, height) ? "Raise" : "Lower") +
+      " the COG height (now " + text::fixed(height, 4) + " m above the soles)" +
       (job.tracks.torso ? ", tilt the torso less," : "") + " or shorten the stride";
   if (solution.knee_flipped)
     fail(ErrorCode::bad_pattern, place, where + " knee would have to bend the wrong way" + remedy);
@@ -196,9 +197,10 @@ void require_body_tracks(const SampleJob& job) {
       const std::string quantity = axis == 2 ? "the COG height" : axis == 0 ? "COG x" : "COG y";
       fail(ErrorCode::bad_pattern, place,
            "in the flight from " + text::exact(begin) + " s to " + text::exact(phase.until) +
-               " s the COG follows a parabola; give a key of " + quantity +
-               " at lift-off and one at touchdown" +
-               (track ? "" : ", and one on the ground before and one after the flight"));
+               " s, the COG follows a parabola, and keys have to state its two ends. Give a key "
+               "of " +
+               quantity + " at the lift-off and another key at the landing" +
+               (track ? "" : ". Also give a key before the flight and a key after the flight"));
     }
   }
 }
@@ -343,16 +345,19 @@ void describe(const SampleJob& job, const CogPlan& plan, const Worst& worst,
   const std::string source = job.tracks.zmp ? "the ZMP keys" : "the ZMP of the phases";
   if (any) {
     const std::string solved =
-        "solved" + axes + " from " + source +
-        (job.pattern.full_model ? " for the full model" : " by the point-mass law (14)(15)") +
-        " (worst ZMP error " + millimetres(worst.zmp) + ")";
-    origin["cog"] = both ? solved : "keys; " + solved;
+        "computed" + axes + " from " + source +
+        (job.pattern.full_model ? " for the full model"
+                                : " for the point-mass model, equations (14)(15)") +
+        " (largest ZMP error " + millimetres(worst.zmp) + ")";
+    origin["cog"] =
+        both ? solved
+             : "from keys in " + std::string(plan.solved[0] ? "y" : "x") + ", and " + solved;
   }
   if (!job.tracks.zmp)
     origin["zmp"] =
         any ? "centres of the supporting soles, from the phases" : "computed from the full model";
   if (!job.tracks.zmp && any && !both)
-    origin["zmp"] += "; where the COG has keys, computed from the full model";
+    origin["zmp"] += ". In the direction in which the COG has keys, computed from the full model";
   const double moved =
       std::max(plan.bump[0].cwiseAbs().maxCoeff(), plan.bump[1].cwiseAbs().maxCoeff()) * 4 *
       elementary::exp(-2.0);
@@ -362,16 +367,16 @@ void describe(const SampleJob& job, const CogPlan& plan, const Worst& worst,
   origin["cog_height"] =
       job.tracks.cog[2] ? "keys" : "constant above the ground, from the defaults";
   if (!job.tracks.fz) origin["fz"] = "computed from the COG height, equation (16)";
-  origin["torso"] = job.tracks.torso ? "keys" : "level, along the mean heading of the feet";
+  origin["torso"] = job.tracks.torso ? "keys" : "level, in the mean heading of both feet";
   if (flies(job)) {
-    origin["cog_height"] += "; parabolas in flight";
+    origin["cog_height"] += ", and parabolas in flight";
     if (!job.tracks.torso)
       origin["torso"] +=
-          ", but turned before, in and after each flight, because the angular momentum in flight "
-          "is 0";
+          ". Before, during and after each flight, Ayumi turns the torso so that the angular "
+          "momentum in flight is 0";
   }
   origin["feet"] = "phases and swings";
-  origin["base"] = "solved from feet, torso and COG";
+  origin["base"] = "computed from feet, torso and COG";
   if (job.ik.lacks_joints() &&
       (worst.lean > kNotedLean || std::max(worst.miss, worst.swing) > kNotedMiss)) {
     const size_t joints = std::min(job.ik.leg(Side::left).size(), job.ik.leg(Side::right).size());
@@ -379,16 +384,17 @@ void describe(const SampleJob& job, const CogPlan& plan, const Worst& worst,
         "a leg has only " + std::to_string(joints) +
         (job.ik.coupled().empty() ? " joints"
                                   : " joints of its own, and one more joint moves both legs") +
-        ", so at some places the leg cannot put the sole level: the trunk leans by up to " +
+        ", so it cannot keep the sole level at all places. Therefore the trunk leans by up to " +
         text::fixed(worst.lean * 180 / std::numbers::pi, 1) +
         " deg, and a supporting sole is up to " + millimetres(worst.miss) +
         " away from its place (allowed " + millimetres(kLackingTolerance) + ")";
     if (worst.swing > kNotedMiss)
-      origin["legs"] += "; a swinging sole by up to " + millimetres(worst.swing) + " (allowed " +
-                        millimetres(kSwingingTolerance) + " in the middle of a swing)";
+      origin["legs"] += ". A swinging sole is up to " + millimetres(worst.swing) +
+                        " away from its place (allowed " + millimetres(kSwingingTolerance) +
+                        " in the middle of a swing)";
   }
   origin["joints"] =
-      "legs by inverse kinematics; other joints from their keys, or from the default posture";
+      "legs by inverse kinematics, other joints from their keys or from the default posture";
 }
 
 }  // namespace

@@ -201,8 +201,8 @@ TrunkTurn plan_trunk_turn(const SampleJob& job, const CogAt& cog) {
     if (phases[i].support != Support::none) continue;
     if (job.links.leads_in_world(job.feet.begin(static_cast<int>(i)), phases[i].until))
       fail(ErrorCode::bad_pattern, place_of_phase(job.pattern, i),
-           "in a flight a hand or the gaze follows the trunk; give their keys before, in and "
-           "after the flight with \"frame\": \"trunk\"");
+           "in a flight, the hands and the gaze have to follow the trunk. Give \"frame\": "
+           "\"trunk\" to their keys before, during and after the flight");
     Flight flight;
     flight.begin = job.feet.begin(static_cast<int>(i));
     flight.end = phases[i].until;

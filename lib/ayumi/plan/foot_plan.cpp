@@ -85,7 +85,7 @@ bool same_place(const Isometry3d& a, const Isometry3d& b) {
   if (by_curve)
     complain(pattern, pointer_of_phase(pattern, phase),
              std::string("the curve between the keys of the ") + name_of(side) +
-                 " foot leaves the place where it stands; give these keys the interpolation "
+                 " foot leaves the place where this foot stands. Give these keys the interpolation "
                  "minimum_jerk, which does not overshoot");
   const double t = pattern.keyframes[dragging].t;
   const Vector3d wanted = feet.pose(side, t).translation();
@@ -94,13 +94,13 @@ bool same_place(const Isometry3d& a, const Isometry3d& b) {
   const std::string message =
       std::string("the ") + name_of(side) + " foot stands at " + place_text(stands.translation()) +
       " m" + " until " + text::brief(until) +
-      " s, but its keys move it while it carries the robot: the key " + pointer + " at " +
+      " s, because it carries the robot, but its keys move it. The key " + pointer + " at " +
       text::brief(t) + " s " +
       (far > 1e-6
            ? "is at " + place_text(wanted) + " m" + ", " + text::brief(1000 * far, 3) + " mm away"
-           : "turns it") +
+           : "turns the foot") +
       (t > until + kInstant
-           ? ". Give the foot a key at " + text::brief(until) + " s where it stands"
+           ? ". Give the foot a key at " + text::brief(until) + " s at the place where it stands"
            : ". Give this key the place where the foot stands") +
       ", or move the foot in a phase in which it does not carry the robot";
   SourcePlace at = {pattern.file, pointer + "/feet"};
@@ -173,11 +173,11 @@ void FootPlan::read_phases(const Pattern& pattern) {
                  std::string("the ") + name_of(swing.foot) +
                      " foot swings while it carries the "
                      "robot (support " +
-                     name_of(phase.support) + "); set support to the other foot");
+                     name_of(phase.support) + "). Set \"support\" to the other foot");
       const int foot = index(swing.foot);
       const Isometry3d to = swing.step ? landing_of(swing, *swing.step, now) : pose_of(swing.to);
       if (!to.matrix().allFinite() || !std::isfinite(swing.lift) || swing.lift < 0)
-        complain(pattern, place + "/swing", "a number is not finite or the lift is below 0");
+        complain(pattern, place + "/swing", "a number is not finite, or the lift is below 0");
       if (swing.step) swing.to = {to.translation(), matrix_to_rpy(to.linear())};
       swing.step.reset();
       const Vector3d turn =
@@ -220,11 +220,12 @@ void FootPlan::read_foot_keys(const Pattern& pattern, Side side) {
     if (!finite(*foot)) stop("a number of the pose of the foot is not finite");
     if (!moves_[index(side)].empty())
       stop(std::string("the ") + name_of(side) +
-           " foot has keys and also swings in the phases; keep one of them");
+           " foot has keys, and it also swings in phases. Remove these keys or the swings of this "
+           "foot");
     if (keys[0].empty() && key.t > 0)
       add(0, start.translation(), matrix_to_rpy(start.linear()), Interpolation::hold);
     if (!keys[0].empty() && key.t <= keys[0].back().t)
-      stop("key times of this foot do not increase");
+      stop("the times of the keys of this foot do not increase");
     add(key.t, foot->position, foot->rpy, key.interpolation.value_or(pattern.interpolation));
   }
   if (keys[0].empty()) return;

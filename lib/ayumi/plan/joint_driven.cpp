@@ -37,8 +37,8 @@ void refuse_flight(const SampleJob& job) {
   for (size_t i = 0; i < job.feet.phases().size(); ++i)
     if (job.feet.phases()[i].support == Support::none)
       fail(ErrorCode::bad_pattern, place_of_phase(job.pattern, i),
-           "in a flight phase (support none) no foot holds the base, and joint keys alone do "
-           "not determine the place of the base; give a table with base columns");
+           "in a flight phase (support none), no foot is on the ground, and joint keys alone do "
+           "not determine the place of the base. Give a table with base columns");
 }
 
 void anchor_samples(const SampleJob& job, CommandSeries& series) {
@@ -64,7 +64,7 @@ void anchor_samples(const SampleJob& job, CommandSeries& series) {
       sample.state.base.attitude.coeffs() *= -1;
     sample.cog = data.cog;
   }
-  series.origin["base"] = "from the foot that carries the robot";
+  series.origin["base"] = "computed from the foot that carries the robot";
 }
 
 void table_base(const SampleJob& job, CommandSeries& series) {
@@ -148,7 +148,7 @@ void fill_feet(const SampleJob& job, CommandSeries& series) {
                                    [](const Phase& phase) { return phase.swing.has_value(); }) ||
                        std::any_of(pattern.keyframes.begin(), pattern.keyframes.end(),
                                    [](const Keyframe& key) { return key.feet[0] || key.feet[1]; });
-  series.origin["feet"] = planned ? "phases and swings" : "where the joints put them";
+  series.origin["feet"] = planned ? "phases and swings" : "computed from the joint angles";
   for (int k = 0; k < job.count; ++k) {
     CommandSample& sample = series.samples[k];
     sample.support = job.feet.support(k * job.dt);
@@ -228,8 +228,8 @@ CommandSeries sample_joint_driven(const SampleJob& job) {
   fill_commands(job, series);
   series.servo_commands = job.pattern.table && job.pattern.table->commands;
   series.origin["joints"] =
-      job.tracks.driver + "; other joints from their keys, or from the default posture";
-  series.origin.try_emplace("cog", "of the posture");
+      job.tracks.driver + ", other joints from their keys or from the default posture";
+  series.origin.try_emplace("cog", "computed from the posture");
   series.origin.try_emplace("zmp", "computed from the full model");
   series.origin.try_emplace("fz", "computed from the full model");
   return series;

@@ -128,8 +128,8 @@ std::string other_unit(const Vector3d& place, double height) {
   for (const auto& [unit, factor] : {std::pair("cm", 1e-2), std::pair("mm", 1e-3)}) {
     const Vector3d meant = factor * place;
     if (meant.norm() < kSameUnit * height)
-      return std::string("lengths are in metres, and these numbers in ") + unit + " are " +
-             numbers(meant, 4) + " m; ";
+      return std::string("Lengths are in metres, and these numbers in ") + unit + " are " +
+             numbers(meant, 4) + " m. ";
   }
   return "";
 }
@@ -171,7 +171,7 @@ void LinkPlan::add_target(const std::string& name, bool gaze, const std::vector<
     target.body = head_body(model);
     if (target.body < 0)
       complain("the robot '" + model.name() +
-               "' has no neck that could turn its head; remove the key");
+               "' has no neck that could turn its head. Remove the key");
     target.axis = gaze_axis(model, target.body);
     target.point = model.bodies()[static_cast<size_t>(target.body)].inertia.com;
   } else if (name == "left" || name == "right") {
@@ -179,7 +179,7 @@ void LinkPlan::add_target(const std::string& name, bool gaze, const std::vector<
     target.body = hand_body(model, name == "left" ? Side::left : Side::right);
     if (target.body < 0)
       complain("the robot '" + model.name() + "' has no " + name +
-               " arm of three joints or more; name the link that should move");
+               " arm of three joints or more. Give the name of the link that should move");
     target.point = limb_point(model, target.body);
   } else {
     const int link = model.find_link(name);
@@ -187,7 +187,7 @@ void LinkPlan::add_target(const std::string& name, bool gaze, const std::vector<
       std::vector<std::string> known = {"left", "right"};
       for (const Link& each : model.links()) known.push_back(each.name);
       complain("the robot '" + model.name() + "' has no link '" + name +
-                   "'; give left, right or the name of a link" + text::suggestion(name, known),
+                   "'. Give left, right or the name of a link" + text::suggestion(name, known),
                true);
     }
     target.name = "link " + name;
@@ -200,11 +200,11 @@ void LinkPlan::add_target(const std::string& name, bool gaze, const std::vector<
   for (const int dof : target.dofs)
     if (solved[static_cast<size_t>(dof)])
       complain(
-          "the legs move this link, and feet, trunk and COG determine the legs; remove this key, "
-          "and give keys of feet, trunk or COG");
+          "the legs move this link, and Ayumi computes the legs from the feet, the trunk and the "
+          "COG. Remove this key, and give keys of the feet, the trunk or the COG");
   if (target.dofs.empty())
     complain(
-        "no joint moves this link alone; remove this key, and give keys of \"torso\" or of joints");
+        "no joint moves this link alone. Remove this key, and give keys of \"torso\" or of joints");
   const auto& bodies = model.bodies();
   for (int b = target.body; b > 0; b = bodies[static_cast<size_t>(b)].parent)
     if (contains(target.dofs, bodies[static_cast<size_t>(b)].dof) && b != target.body)
@@ -218,7 +218,7 @@ void LinkPlan::add_target(const std::string& name, bool gaze, const std::vector<
     const Keyframe& key = pattern_->keyframes[i];
     const LinkTarget* const asked = asks(key);
     if (asked && asked->direction && target.axis.isZero())
-      complain("the link is a point, which has no direction; give its position alone");
+      complain("the link is a point and has no direction. Give its position without a direction");
     bool joints = false;
     const auto names_joint = [&](const auto& angles) {
       for (const auto& [joint, angle] : angles)
@@ -392,8 +392,8 @@ std::vector<LinkPlan::Aim> LinkPlan::aims_at(const Group& group, double t, const
       if (sum.norm() < kNoDirection)
         fail(ErrorCode::bad_pattern, in_file(*pattern_, "/keyframes"),
              "t = " + text::fixed(t, 3) + " s: the " + target.name +
-                 " would have to turn round between two keys of opposite directions; put a key "
-                 "between them");
+                 " would have to turn by 180 deg, because two successive keys have opposite "
+                 "directions. Add a key between these two keys");
       return sum.normalized();
     };
     if (target.gaze) {
@@ -711,34 +711,34 @@ void LinkPlan::complain(const Group& group, double t, const std::vector<Aim>& ai
           (joint.prismatic ? text::fixed(state.theta[dof], 4) + " m" : degrees(state.theta[dof])));
     }
     what = "the " + target.name + " cannot reach this place from the posture before this time";
-    remedy = "these angles reach the place: " + text::join(angles, ", ") +
-             "; give the joints keys with these angles at this time";
+    remedy = "These angles reach the place: " + text::join(angles, ", ") +
+             ". Give the joints keys with these angles at this time";
   } else if (target.gaze) {
     what = "the gaze misses its point by " + degrees(angle);
-    remedy = "give a point nearer to straight ahead, or turn the torso";
+    remedy = "Give a point that is nearer to the forward direction, or turn the torso";
   } else if (missing > 0) {
     what = "the " + target.name + " is out of reach by " + millimetres(missing);
     remedy =
         other_unit(in_trunk ? Vector3d(trunk.inverse() * missed->place) : missed->place,
                    data.cog.z()) +
-        "the " + target.name + " reaches only " +
+        "The " + target.name + " reaches only " +
         numbers(in_trunk ? Vector3d(trunk.inverse() * end) : end, 4) + " m" + in_frame +
-        (only_way ? "; the trunk also moves at this time: let the hand begin to move after the "
-                    "trunk has stopped, with a key \"free\" of the hand at that time, or "
+        (only_way ? ". The trunk also moves at this time. Let the hand begin to move after the "
+                    "trunk has stopped (with a key \"free\" of the hand at that time), or "
                     "move the target"
-                  : "; move the target, or move or tilt the trunk");
+                  : ". Move the target, or move or tilt the trunk");
   } else {
-    what = "the " + target.name + " is at its place but points " + degrees(angle) +
-           " away from its direction (allowed " + degrees(kAligned) + ")";
-    remedy = "at this place, its " + std::to_string(target.dofs.size()) +
+    what = "the " + target.name + " is at its place, but its direction differs by " +
+           degrees(angle) + " from the direction of the key (allowed " + degrees(kAligned) + ")";
+    remedy = "At this place, its " + std::to_string(target.dofs.size()) +
              " joints allow the direction " +
              numbers(in_trunk ? Vector3d(trunk.linear().transpose() * along) : along, 3) +
-             in_frame + "; give this direction, or leave the direction out";
+             in_frame + ". Give this direction, or leave the direction out";
   }
   const SourcePlace place = place_of_keyframe(*pattern_, key.keyframe) + ("/" + target.key);
   const std::string message = "t = " + text::fixed(t, 3) + " s" +
                               (under_way ? ", on the way to this key" : "") + ": " + what + limits +
-                              "; " + remedy;
+                              ". " + remedy;
   if (only_way) throw MissedOnTheWay(message, place, key.t);
   fail(ErrorCode::bad_pattern, place, message);
 }

@@ -121,10 +121,11 @@ VectorXd omega_squared_of(const SampleJob& job, const CogPlan& plan, const Grid&
     w2[k] = (z.acceleration + kGravity) / std::max(above + more, kLeastHeight * above);
     if (job.feet.support(grid.t(k)) == Support::none || std::abs(w2[k]) < 1e-6) w2[k] = 0;
     if (!(above > 0) || w2[k] < 0)
-      fail(ErrorCode::bad_pattern, in_file(job.pattern, "COG height"),
-           "at t = " + text::fixed(grid.t(k), 3) +
-               " s the COG is not above the ZMP or falls faster than gravity; raise the COG or "
-               "slow the height keys down");
+      fail(
+          ErrorCode::bad_pattern, in_file(job.pattern, "COG height"),
+          "at t = " + text::fixed(grid.t(k), 3) +
+              " s, the COG is not above the ZMP, or it falls faster than gravity allows. Raise the "
+              "COG, or give the keys of the COG height more time");
   }
   return w2;
 }

@@ -26,8 +26,9 @@ int sample_count(const Pattern& pattern, double duration, double dt) {
   const double steps = std::ceil(duration / dt - 1e-6);
   if (steps < 5 || steps > kMostSamples)
     fail(ErrorCode::bad_pattern, in_file(pattern, "/phases"),
-         text::exact(duration) + " s at a step of " + text::exact(dt) + " s give " +
-             text::brief(steps) + " steps, but only 5 to 4e6 are possible; choose another step");
+         "a motion of " + text::exact(duration) + " s with a sampling step of " + text::exact(dt) +
+             " s has " + text::brief(steps) +
+             " steps, but 5 to 4e6 steps are possible. Choose another step");
   return static_cast<int>(steps) + 1;
 }
 
@@ -63,7 +64,8 @@ CommandSeries sample_posture(const RobotModel& model, const Pattern& pattern,
                       progress,
                       solving.plan_alone};
   CommandSeries series = tracks.joint_driven ? sample_joint_driven(job) : sample_body_driven(job);
-  if (!links.empty()) series.origin[links.origin()] = "solved from keys by the joints of the limb";
+  if (!links.empty())
+    series.origin[links.origin()] = "computed from keys, by moving the joints of the limb";
   for (const auto& [t, weight] : tracks.weight)
     series.joint_weight.push_back({std::lround(t / options.dt), weight});
   return series;
@@ -91,7 +93,7 @@ CommandSeries sample_keys(const RobotModel& model, const Pattern& pattern,
 void require_soles(const RobotModel& model) {
   if (!model.has_soles())
     fail(ErrorCode::bad_model, model.name() +
-                                   ": the robot has no soles; add the left and the right sole to "
+                                   ": the robot has no soles. Add the left and the right sole to "
                                    "\"soles\" in its sidecar");
 }
 
@@ -104,7 +106,7 @@ CommandSeries sample_plan(const RobotModel& model, const Pattern& pattern,
   if (has_viip_phases(pattern))
     fail(ErrorCode::bad_pattern, in_file(pattern, "/phases"),
          "the feet have no plan in a phase with a VIIP goal, because "
-         "VIIP chooses the footholds; leave these phases out");
+         "VIIP chooses the footholds. Leave these phases out");
   Pattern plan = pattern;
   for (Keyframe& key : plan.keyframes) {
     key.hands.clear();

@@ -99,7 +99,7 @@ void KeyReader::read(const Keyframe& key) {
   if (key.t > feet.duration() + kSameTime)
     complain(key, "the key is at " + text::exact(key.t) +
                       " s, after the end of the last phase at " + text::exact(feet.duration()) +
-                      " s; move the key or add a phase");
+                      " s. Move the key, or add a phase");
   read_joints(key, interpolation);
   const Vector3d middle = feet.support_center(0);
   if (key.zmp) {
@@ -176,7 +176,7 @@ void check_keyframe_order(const Pattern& pattern) {
     if (!(pattern.keyframes[i].t > pattern.keyframes[i - 1].t))
       complain(pattern.keyframes[i],
                text::exact(pattern.keyframes[i].t) + " s does not come after " +
-                   text::exact(pattern.keyframes[i - 1].t) + " s; key times must increase");
+                   text::exact(pattern.keyframes[i - 1].t) + " s. Key times must increase");
 }
 
 // The rows of a table as one smooth track: a cubic spline through all rows.
@@ -194,13 +194,14 @@ Track table_track(double dt, size_t rows, const std::function<double(size_t)>& v
 void check_table(const Pattern& pattern, const FootPlan& feet) {
   const DenseTable& table = *pattern.table;
   const auto rows = static_cast<size_t>(table.theta.rows());
-  if (rows < 2) complain_table(pattern, "the table has fewer than two rows; give at least two");
+  if (rows < 2)
+    complain_table(pattern, "the table has fewer than two rows. Give at least two rows");
   if (!(table.dt > 0)) complain_table(pattern, "the time step is not above 0");
   if (!table.theta.allFinite()) complain_table(pattern, "a joint angle is not a finite number");
   const double end = table.dt * static_cast<double>(rows - 1);
   if (end > feet.duration() + 0.5 * table.dt)
     complain_table(pattern, "the table ends at " + text::exact(end) + " s, after the last phase (" +
-                                text::exact(feet.duration()) + " s); extend the phases");
+                                text::exact(feet.duration()) + " s). Extend the phases");
   if (static_cast<size_t>(table.theta.cols()) != table.joints.size())
     complain_table(pattern, "the table has " + std::to_string(table.theta.cols()) +
                                 " joint columns, but " + std::to_string(table.joints.size()) +
@@ -209,7 +210,7 @@ void check_table(const Pattern& pattern, const FootPlan& feet) {
        {table.base.size(), table.cog.size(), table.zmp.size(), table.fz.size()})
     if (count != 0 && count != rows)
       complain_table(pattern,
-                     "the columns differ in length; give every column the same number of rows");
+                     "the columns differ in length. Give every column the same number of rows");
 }
 
 void read_table(const RobotModel& model, const Pattern& pattern, KeyReader& reader,
@@ -221,8 +222,8 @@ void read_table(const RobotModel& model, const Pattern& pattern, KeyReader& read
   for (size_t j = 0; j < table.joints.size(); ++j) {
     const int dof = find_joint(model, table.joints[j], in_file(pattern, "table " + table.file));
     if (!reader.joints[dof].empty())
-      complain_table(
-          pattern, "the joint '" + table.joints[j] + "' has keys too; keep the keys or the column");
+      complain_table(pattern, "the joint '" + table.joints[j] +
+                                  "' has a column and also keys. Remove the keys or the column");
     tracks.joints[dof] = table_track(table.dt, rows, [&](size_t k) {
       return table.theta(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(j));
     });

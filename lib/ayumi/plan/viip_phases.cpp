@@ -80,14 +80,14 @@ void refuse_viip_phases(const Pattern& pattern, const std::string& done) {
       fail(ErrorCode::bad_pattern, place_of_phase(pattern, i),
            "the controller decides the motion of a phase with a goal, so the pattern cannot "
            "be " +
-               done + "; simulate the pattern, and use the tables of the run");
+               done + ". Simulate the pattern, and use the tables of the run");
 }
 
 Pattern without_viip_phases(const Pattern& pattern) {
   if (pattern.table)
     fail(ErrorCode::bad_pattern, in_file(pattern, "/table"),
-         "a pattern cannot have both a sampled motion and phases with "
-         "\"viip\"; keep one of them");
+         "a pattern cannot have both a table of a motion and phases with \"viip\". Remove the "
+         "table or these phases");
   const std::vector<Cut> cuts = cuts_of(pattern);
   Pattern result = pattern;
   result.correction.reset();
@@ -105,7 +105,7 @@ Pattern without_viip_phases(const Pattern& pattern) {
         fail(ErrorCode::bad_pattern, key.place,
              "the key at " + text::exact(key.t) + " s lies inside the VIIP phase from " +
                  text::exact(cut.begin) + " to " + text::exact(cut.end) +
-                 " s, in which goals replace keys; move the key");
+                 " s, but in such a phase goals replace keys. Move the key");
     Keyframe moved = key;
     moved.t = time_without(cuts, key.t);
     if (!result.keyframes.empty() && moved.t <= result.keyframes.back().t + 1e-9)
@@ -134,14 +134,14 @@ CommandSeries with_viip_phases(const RobotModel& model, const Pattern& pattern,
     const CommandSample& rests = cut.samples[static_cast<size_t>(std::max(0l, at - 1))];
     if (from.support != Support::both && rests.support != Support::both)
       fail(ErrorCode::bad_pattern, place,
-           "the phase begins on one foot; put a phase with support \"both\" before this phase");
+           "the phase begins on one foot. Put a phase with support \"both\" before this phase");
     const double z = from.cog.z() - from.zmp.z();
     const double limit = kAtRest * std::sqrt(kGravity * z);
     if (from.dcog.norm() > limit)
       fail(ErrorCode::bad_pattern, place,
            "the phase begins while the COG moves at " + text::fixed(from.dcog.norm(), 3) +
                " m/s (limit " + text::fixed(limit, 3) +
-               " m/s); let the motion before the phase come to rest");
+               " m/s). Let the motion before this phase come to rest");
     const ViipSpan span{static_cast<long>(series.samples.size()), tick(each.end),
                         *pattern.phases[each.phase].viip};
     CommandSample rest = held(model, from);
@@ -155,8 +155,8 @@ CommandSeries with_viip_phases(const RobotModel& model, const Pattern& pattern,
   else
     for (; done <= last; ++done) series.samples.push_back(cut.samples[static_cast<size_t>(done)]);
   series.origin["viip"] = std::to_string(cuts.size()) + (cuts.size() == 1 ? " phase" : " phases") +
-                          " with VIIP goals: the simulation computes the motion; the check "
-                          "assumes that the posture is held";
+                          " with VIIP goals. Only the simulation computes the motion of such a "
+                          "phase; the check assumes that the robot keeps its posture";
   return series;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "ayumi/base/sentence.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/limits/amount_text.hpp"
 #include "ayumi/limits/limit.hpp"
@@ -147,17 +148,16 @@ std::string remedy(const InfeasibilityCause& cause) {
   // follows.
   const Finding& finding = cause.finding;
   const bool states_fact = spec_of(finding.kind).infeasibility && !finding.action.empty();
-  return (states_fact ? finding.action : finding.remedy) +
-         (is_matter_of_time(finding) ? " (a slower motion does not help)" : "");
+  return states_fact ? finding.action : finding.remedy;
 }
 
 // The lock that covers the time of a finding, in words; empty if there is none.
 std::string time_lock(const Finding& f, const RepairOptions& options) {
   std::string posture;
   for (const auto& [begin, end] : options.locked_windows) {
-    if (begin < end && f.at >= begin && f.at <= end) return "this window is locked";
+    if (begin < end && f.at >= begin && f.at <= end) return "This window is locked";
     if (begin == end && is_of_posture(f) && f.begin <= begin && f.end >= begin)
-      posture = "the posture at " + text::brief(begin) + " s is locked";
+      posture = "The posture at " + text::brief(begin) + " s is locked";
   }
   return posture;
 }
@@ -195,13 +195,17 @@ std::vector<InfeasibilityCause> infeasibility_report(const RobotModel& model,
       worst_of(report, [&](const Finding& f) { return is_error(f) && (!by_lock || locked(f)); });
   for (InfeasibilityCause& cause : result) {
     cause.time_factor = time_factor(model, series, cause.finding, options.check);
-    cause.text = words_of(cause) + "; ";
+    cause.text = words_of(cause);
+    if (is_matter_of_time(cause.finding) && cause.time_factor <= 1)
+      cause.text += ". The error remains even if this window is stretched to " +
+                    text::brief(policy::infeasible::kSlowest) + " times its length";
     if (at_locked_joint(cause.finding, options))
-      cause.text +=
-          cause.finding.where + " is locked, so unlock the joint, or change the pattern: ";
+      cause.text += ". " + cause.finding.where +
+                    " is locked. Unlock this joint, or change the pattern: " + remedy(cause);
     else if (const std::string lock = time_lock(cause.finding, options); !lock.empty())
-      cause.text += lock + ", so remove the lock, or change the pattern: ";
-    cause.text += remedy(cause);
+      cause.text += ". " + lock + ". Remove the lock, or change the pattern: " + remedy(cause);
+    else
+      cause.text = text::two_sentences(cause.text, remedy(cause));
   }
   most_severe_first(result);
   return result;
@@ -221,7 +225,10 @@ void solve_relaxed(RepairState& state) {
   note_work(state, relaxed, solution);
   state.result.constraint_violation = violation;
   const bool cut_short = solution.status == NlpStatus::iteration_limit;
-  if (cut_short) state.cut_short_by = solution.out_of_work ? "work" : "iterations";
+  if (cut_short)
+    state.cut_short_by = solution.out_of_work
+                             ? "largest amount of computation for a motion of this duration"
+                             : "largest number of iterations";
   // If even the nearby motion with the smallest violation violates a limit, no nearby motion
   // passes. A search that was stopped early does not show this.
   if (solution.status != NlpStatus::failed)

@@ -224,7 +224,7 @@ std::optional<std::array<Track, 3>> zmp_of_least_sway(const RobotModel& model,
   if (flies) return std::nullopt;
   const SwayProgram program = sway_program(model, plan, smooth);
   const NlpSolution solution =
-      solve(nlp_of(program, plan), {}, progress, "look for the smallest sway");
+      solve(nlp_of(program, plan), {}, progress, "looking for the smallest sway");
   if (solution.status != NlpStatus::solved) return std::nullopt;
   const VectorXd z = program.zmp * solution.x;
   std::array<std::vector<TrackKey>, 3> keys;

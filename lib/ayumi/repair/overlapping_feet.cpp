@@ -76,10 +76,10 @@ std::string words_of(const OverlappingFeet& feet) {
   const std::string came = name_of(feet.landed), stood = name_of(other(feet.landed));
   return "the " + came + " foot is planned to stand on the " + stood + " foot from " +
          text::fixed(feet.begin, 2) + " to " + text::fixed(feet.end, 2) +
-         " s: their soles overlap by " + text::fixed(1000 * feet.depth, 0) +
-         " mm, and a repair does not move footholds; move the foothold of the " + came +
-         " foot, now at (" + text::fixed(feet.place.x(), 3) + ", " +
-         text::fixed(feet.place.y(), 3) + ") m, away from " + "the " + stood + " foot";
+         " s. The soles overlap by " + text::fixed(1000 * feet.depth, 0) +
+         " mm. A repair does not move footholds. Move the foothold of the " + came +
+         " foot away from the " + stood + " foot. This foothold is now at (" +
+         text::fixed(feet.place.x(), 3) + ", " + text::fixed(feet.place.y(), 3) + ") m";
 }
 
 }  // namespace ayumi

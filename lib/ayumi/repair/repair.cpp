@@ -64,9 +64,9 @@ void give_reasons(RepairState& state) {
                                  ? "there is 1 more error"
                                  : "there are " + std::to_string(count - named) + " more errors");
   if (!state.cut_short_by.empty())
-    result.reasons.push_back("the search stopped at its limit of " + state.cut_short_by +
-                             ". So it is not known whether a repair exists. The errors above are "
-                             "those of the given motion");
+    result.reasons.push_back("the search stopped, because it reached the " + state.cut_short_by +
+                             ". So it is not known whether a repair exists. The reasons above "
+                             "are the errors of the motion before any repair");
 }
 
 // `before` is the check of the given motion.

@@ -34,7 +34,7 @@ void require_windows(const std::vector<TimeWindow>& windows) {
   for (const auto& [begin, end] : windows)
     if (!(begin <= end) || !std::isfinite(begin) || !std::isfinite(end))
       fail(ErrorCode::usage, "locked window " + text::exact(begin) + ".." + text::exact(end) +
-                                 " s: the end must not come before the beginning");
+                                 " s: the window must not end before it begins");
 }
 
 // The times of locked windows without length, moved to the nearest samples.

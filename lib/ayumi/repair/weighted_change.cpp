@@ -56,9 +56,9 @@ VectorXd weight_factors(const RobotModel& model, const std::map<std::string, dou
                                  "' has no such joint" +
                                  text::suggestion(joint, model.dof_names()));
     if (!(factor > 0) || !std::isfinite(factor))
-      fail(ErrorCode::usage,
-           "weight of joint '" + joint + "': " + text::exact(factor) +
-               "; a weight must be above 0 (to keep the joint still, lock the joint)");
+      fail(ErrorCode::usage, "weight of joint '" + joint + "': " + text::exact(factor) +
+                                 " is not possible. A weight must be above 0. To keep the joint "
+                                 "still, lock the joint");
     factors[dof] = factor;
   }
   return factors;

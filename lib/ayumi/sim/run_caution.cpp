@@ -9,11 +9,11 @@ std::string unfit_words(const SimulationLog& log) {
     case Outcome::stands:
       return "";
     case Outcome::unsettled:
-      return "the run did not settle";
+      return "the robot did not settle";
     case Outcome::fell:
       break;
   }
-  std::string words = "the run fell at " + text::fixed(log.result.fell_at, 2) + " s";
+  std::string words = "the robot fell at " + text::fixed(log.result.fell_at, 2) + " s";
   for (const SimulationEvent& event : log.events)
     if (event.kind == EventKind::fell) words += " (" + event.text + ")";
   return words;

@@ -10,8 +10,8 @@ namespace ayumi {
 /// if there are none.
 std::string words_of(const std::vector<Disturbance>& scenario);
 
-/// The reason why the table of this run is not for a robot, such as "the run fell at 2.31 s (trunk
-/// tilt)" or "the run did not settle". Empty if the robot stands at the end.
+/// The reason why the table of this run is not for a robot, such as "the robot fell at 2.31 s
+/// (trunk tilt)" or "the robot did not settle". Empty if the robot stands at the end.
 std::string unfit_words(const SimulationLog& log);
 
 /// The words of words_of() and of unfit_words() for a run.

@@ -137,8 +137,8 @@ void check_step(const RobotModel& model, const VectorXd& targets, const StepInpu
   for (int j = 0; j < model.dof_count(); ++j)
     if (!sound(targets[j]))
       complain("servo target of " + model.dofs()[j].name + " is " + text::brief(targets[j]) +
-               "; a number below 1e6 is expected (with unstable gains, targets grow until they "
-               "exceed it: choose smaller gains)");
+               "; a number below 1e6 is expected (with unstable gains, targets grow beyond this "
+               "number: choose smaller gains)");
   for (const ExternalWrench& w : input.wrenches)
     if (!(sound(w.force) && sound(w.torque) && sound(w.point) && w.body >= -1 &&
           w.body < static_cast<int>(model.bodies().size())))

@@ -414,7 +414,7 @@ std::vector<PushCase> push_limits(const RobotModel& model, const CommandSeries& 
     in_parallel(2 * study.controllers.size(), options.threads, study.stop, [&](size_t i) {
       study.run_baselines(i / 2, i % 2 == 1);
       const std::lock_guard lock(mutex);
-      report_progress("runs without a push");
+      report_progress("simulating first without a push");
     });
   }
   std::vector<PushCase> cases(count);

@@ -79,6 +79,53 @@ double most_of(UncertainKind kind) {
   return std::numeric_limits<double>::infinity();
 }
 
+/// A value in words with its unit. A factor follows "x", and a value that can be negative has a
+/// sign.
+std::string amount_words(UncertainKind kind, double value) {
+  const auto with = [&](const std::string& unit, double scale = 1) {
+    const bool is_signed = std::isinf(info(kind).least) && value > 0;
+    return (is_signed ? "+" : "") + text::brief(scale * value, 4) + unit;
+  };
+  const double degree = 180 / std::numbers::pi;
+  switch (kind) {
+    case UncertainKind::mass:
+    case UncertainKind::inertia:
+    case UncertainKind::sole_stiffness:
+    case UncertainKind::sole_damping:
+    case UncertainKind::servo_kp:
+    case UncertainKind::servo_kd:
+    case UncertainKind::sensor_noise:
+      return "x " + text::brief(value, 4);
+    case UncertainKind::friction:
+    case UncertainKind::push_link:
+      return text::brief(value, 4);
+    case UncertainKind::cog:
+    case UncertainKind::bumps:
+      return with(" m");
+    case UncertainKind::slope:
+    case UncertainKind::backlash:
+    case UncertainKind::encoder_offset:
+    case UncertainKind::attitude_bias:
+    case UncertainKind::push_direction:
+      return with(" deg", degree);
+    case UncertainKind::gyro_bias:
+      return with(" deg/s", degree);
+    case UncertainKind::servo_friction:
+      return with(" N m");
+    case UncertainKind::servo_delay:
+    case UncertainKind::sensor_latency:
+    case UncertainKind::push_time:
+      return text::brief(value, 4) + " s";
+    case UncertainKind::load_bias:
+      return with(" N");
+    case UncertainKind::payload:
+      return with(" kg");
+    case UncertainKind::push_size:
+      return text::brief(value, 4) + " N s";
+  }
+  return text::brief(value, 4);
+}
+
 /// The time at which a run that does not fall ends [s].
 double run_end(const CommandSeries& series, const SimulateOptions& options) {
   return static_cast<double>(static_cast<long>(series.samples.size()) +
@@ -258,7 +305,7 @@ void UncertainTask::check(const std::vector<double>& drawn, const std::string& w
                           " (" + info(q.kind).meaning + "), but " + why);
     };
     if (!(drawn[i] >= least) || (positive && drawn[i] == least))
-      complain(std::string("it must ") + (positive ? "be above 0" : "not be negative") +
+      complain(std::string("the value must ") + (positive ? "be above 0" : "not be negative") +
                "; bound the distribution, for example with \"truncated\"");
     if (drawn[i] > most)
       complain("the largest value allowed is " + text::brief(most) +
@@ -463,19 +510,26 @@ CaseResult UncertainTask::run(const CaseNumbers& numbers) const {
 
 std::string UncertainTask::value_text(size_t i, double drawn) const {
   const DrawnValue& value = values_[i];
-  std::string words = text::brief(drawn, 4);
+  std::string words = amount_words(value.quantity->kind, drawn);
   if (value.push >= 0) {
     const UncertainPush& push = uncertainty_->pushes[static_cast<size_t>(value.push)];
     const size_t number = static_cast<size_t>(std::max(0.0, drawn));
     if (value.quantity == &push.link) words = push.links[number % push.links.size()];
     if (value.quantity == &push.time && push.phases) words = phases_[number % phases_.size()].name;
-    if (value.quantity == &push.size) words += push.bounds ? " B" : " N s";
+    if (value.quantity == &push.size && push.bounds) words = text::brief(drawn, 4) + " B";
   }
-  if (value.quantity == nullptr) return words;
-  const bool angle =
-      info(value.quantity->kind).angle || value.quantity->kind == UncertainKind::push_direction;
-  if (angle) words = text::brief(drawn * 180 / std::numbers::pi, 4) + " deg";
   return value.name + " " + words;
+}
+
+std::string UncertainTask::values_text(const std::vector<double>& drawn) const {
+  std::string words;
+  for (size_t i = 0; i < drawn.size(); ++i) {
+    const bool same_group =
+        i > 0 && values_[i].push == values_[i - 1].push &&
+        (values_[i].push >= 0 || values_[i].quantity->kind == values_[i - 1].quantity->kind);
+    words += (i == 0 ? "" : same_group ? ", " : "; ") + value_text(i, drawn[i]);
+  }
+  return words;
 }
 
 }  // namespace ayumi

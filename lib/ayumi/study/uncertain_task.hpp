@@ -83,11 +83,13 @@ class UncertainTask {
   /// Runs a case until its end, or until the robot has fallen.
   CaseResult run(const CaseNumbers& numbers) const;
 
-  /// A value in words, such as "mass of torso: 1.032", with the name of a phase or link if it has
-  /// one.
-  std::string value_text(size_t value, double drawn) const;
+  /// All values of a case in words with their units, such as "mass of torso x 1.032, mass of head x
+  /// 0.9871; friction 0.74". A semicolon separates kinds of values.
+  std::string values_text(const std::vector<double>& drawn) const;
 
  private:
+  /// A value in words, with the name of a phase or link if it has one.
+  std::string value_text(size_t value, double drawn) const;
   void add_quantity(const UncertainQuantity& quantity);
   void add_value(const std::string& name, const UncertainQuantity& quantity,
                  std::vector<int> targets, int push);

@@ -207,13 +207,10 @@ class Footholds {
     std::string words = std::string("the ") + name_of(swing.foot) + " foot lands " +
                         text::fixed(-1e3 * *clearance, 1) + " mm inside the " +
                         name_of(other(swing.foot)) + " foot";
-    std::vector<std::string> remedies;
     for (const std::optional<Remedy>& remedy : {to_the_side(phase), less_turned(phase)}) {
       if (!remedy) continue;
-      remedies.push_back("with " + remedy->words + ", " +
-                         text::remaining(remedy->errors, errors_, "error"));
+      words += ". With " + remedy->words + ", " + text::remaining(remedy->errors, errors_, "error");
     }
-    if (!remedies.empty()) words += "; " + text::join(remedies, ", and ");
     return Mistake{pointer_of_phase(task_.pattern, phase) + "/swing", words};
   }
 

@@ -76,7 +76,7 @@ std::vector<Mistake> judge_payloads(const Task& task, const CheckOptions& option
     for (Finding f : heavy.errors) {
       f.where += " with " + carried;
       f.hint = f.remedy = "the payload of " + carried +
-                          " causes this finding; in this motion, the robot can carry " + bearable +
+                          " causes this finding. In this motion, the robot can carry " + bearable +
                           " there";
       f.follows_from.clear();
       f.cause = -1;
@@ -84,7 +84,7 @@ std::vector<Mistake> judge_payloads(const Task& task, const CheckOptions& option
     }
     mistakes.push_back({"/scenario/" + std::to_string(heavy.which),
                         "the payload on " + payload.on + " is " + mass +
-                            ", which is too heavy for this motion; the robot can carry " +
+                            ", which is too heavy for this motion. The robot can carry " +
                             bearable + " there"});
   }
   // Errors come first in the report, and causes are counted among them.

@@ -111,11 +111,12 @@ ReferenceTrajectory table_of_log(const RobotModel& model, const std::string& pro
                                  const SimulationLog& log, ServoContent content) {
   for (size_t j = 0; j < log.joints.size() || j < model.dofs().size(); ++j)
     if (j >= log.joints.size() || j >= model.dofs().size() || log.joints[j] != model.dofs()[j].name)
-      fail(ErrorCode::usage, "the run has other joints than robot '" + model.name() + "' (" +
-                                 (j < log.joints.size() ? "its joint " + std::to_string(j + 1) +
-                                                              " is " + log.joints[j]
-                                                        : "it has only " + std::to_string(j)) +
-                                 "); give the robot of the run");
+      fail(ErrorCode::usage,
+           "the run has other joints than robot '" + model.name() + "' (" +
+               (j < log.joints.size()
+                    ? "joint " + std::to_string(j + 1) + " of the run is " + log.joints[j]
+                    : "the run has only " + std::to_string(j) + " joints") +
+               "). Give the robot of the run");
   if (content == ServoContent::lead) {
     ReferenceTrajectory postures;
     for (const SimulationSample& sample : log.samples) append_posture(sample, postures);

@@ -31,8 +31,8 @@ void refuse_unknown_places(const Pattern& pattern, const RobotModel& robot) {
       if (std::find(links.begin(), links.end(), name) == links.end())
         fail_unknown_name(place + "/on",
                           robot.name() + " has no link '" + name + "'" +
-                              (push ? "; 'cog' pushes through the centre of gravity"
-                                    : "; `ayumi inspect ROBOT --json` lists the links") +
+                              (push ? " (with 'cog', a push acts at the centre of gravity)"
+                                    : " (`ayumi inspect ROBOT --json` lists the links)") +
                               text::suggestion(name, links));
     };
     const auto refuse_joint = [&](const std::string& name) {
@@ -224,13 +224,14 @@ std::vector<std::string> unfit_reasons(const Judgement& judgement, const Simulat
 }
 
 std::string refusal_of_goals() {
-  return "the pattern has VIIP goals, so its joint angles are known only after a simulation; run "
-         "the pattern (ayumi run), then export the RUN";
+  return "the pattern has VIIP goals, so its joint angles are known only after a simulation. Run "
+         "the pattern with `ayumi run`, and then export the RUN";
 }
 
 std::string refusal_of_disturbances(const std::string& disturbances) {
   return "the table is from a run with disturbances (" + disturbances +
-         ") and contains the reactions to them; --pushed exports this table nevertheless";
+         "), so it contains the reactions of the robot to them. --pushed exports this table "
+         "nevertheless";
 }
 
 std::vector<std::string> export_refusals(const Task& task, const Judgement& judgement) {

@@ -93,13 +93,14 @@ Pattern cut(const RobotModel& model, const MotionPart& motion, long first, long 
   if (!(first >= 0 && first < last && last < count))
     fail(ErrorCode::usage, "samples " + std::to_string(first) + " to " + std::to_string(last) +
                                " cannot be cut out of a motion with the samples 0 to " +
-                               std::to_string(count - 1) + "; the last must come after the first");
+                               std::to_string(count - 1) +
+                               ". The last sample must come after the first");
   const CommandSample& start = series.samples[static_cast<size_t>(first)];
   for (const long k : {first, last})
     if (series.samples[static_cast<size_t>(k)].support != Support::both)
       fail(ErrorCode::bad_pattern, in_file(motion.pattern, "/phases"),
            "at " + text::exact(series.dt * static_cast<double>(k)) +
-               " s a foot is in the air; let the part begin and end where "
+               " s, a foot is in the air. Let the part begin and end where "
                "both feet are on the ground");
   Pattern result = baked(model, motion.pattern, series, table);
   result.repair = {};  // its times and joints are those of the whole walk

@@ -73,8 +73,8 @@ Isometry3d stand(const Feet& feet) {
 void require_stand(const Pattern& pattern, const CommandSample& sample, const char* when) {
   if (sample.support != Support::both)
     fail(ErrorCode::bad_pattern, in_file(pattern, std::string(when)),
-         "a foot is in the air here, and motions can be joined only where both feet stand on "
-         "the ground; let both feet stand here");
+         "a foot is in the air here, but motions can be joined only where both feet stand on "
+         "the ground. Let both feet stand here");
 }
 
 RobotState moved(const Isometry3d& shift, const RobotState& state) {
@@ -190,7 +190,7 @@ std::vector<RobotState> transition(const RobotModel& model, const RobotState& fr
     if (!legs.solve(target, state, data).reached)
       fail(ErrorCode::bad_pattern,
            "no transition is possible, because the legs cannot go from one posture to the other "
-           "while both feet stay in place; choose postures that are closer to each other");
+           "while both feet stay in place. Choose postures that are closer to each other");
     states.push_back(state);
   }
   return states;
@@ -275,7 +275,7 @@ void require_same_stand(const Pattern& second, const Feet& last, const Feet& fir
              " deg away from its place at the end of the first motion (limits " +
              text::fixed(1000 * kSamePlace, 1) + " mm and " +
              text::fixed(kSameAngle * 180 / M_PI, 1) +
-             " deg); let the first motion end in the stance in which the second begins");
+             " deg). Let the first motion end in the stance in which the second motion begins");
   }
 }
 
@@ -292,13 +292,13 @@ void require_same_posture(const RobotModel& model, const Pattern& second, const 
              " deg away from its place at the end of the first motion (limits " +
              text::fixed(1000 * kSameBase, 2) + " mm and " +
              text::fixed(kSameJoint * 180 / M_PI, 2) +
-             " deg); join the motions with `ayumi edit blend --over S`");
+             " deg). Join the motions with `ayumi edit blend --over S`");
   if (most < kSameJoint) return;
   fail(ErrorCode::bad_pattern, in_file(second, "/start"),
        model.dofs()[worst].name + " is " + text::fixed(most * 180 / M_PI, 2) +
-           " deg away from its angle at the end of the first motion; limit " +
+           " deg away from its angle at the end of the first motion (limit " +
            text::fixed(kSameJoint * 180 / M_PI, 2) +
-           " deg; join the motions with `ayumi edit blend --over S`");
+           " deg). Join the motions with `ayumi edit blend --over S`");
 }
 
 }  // namespace
@@ -309,7 +309,7 @@ Pattern joined(const RobotModel& model, const MotionPart& first, const MotionPar
   if (std::abs(a.dt - b.dt) > 1e-12)
     fail(ErrorCode::usage, "motions with sampling steps of " + text::exact(a.dt) + " and " +
                                text::exact(b.dt) +
-                               " s cannot be joined; sample both motions with the same step");
+                               " s cannot be joined. Sample both motions with the same step");
   require_stand(first.pattern, a.samples.back(), "end");
   require_stand(second.pattern, b.samples.front(), "start");
   const Feet last = soles_of(model, a.samples.back().state);
@@ -436,7 +436,7 @@ void require_keys(const KeyedTracks& part) {
   const Pattern& pattern = part.pattern;
   const auto stop = [&](const SourcePlace& place, const std::string& why) {
     fail(ErrorCode::bad_pattern, place,
-         why + ", so the motion cannot be joined to another one by keys");
+         why + ", so this motion cannot be joined to another motion by keys");
   };
   if (part.tracks.joint_driven)
     stop(in_file(pattern, "/keyframes"), "the joints of the legs follow " + part.tracks.driver);
@@ -453,7 +453,7 @@ void require_same_tracks(const KeyedTracks& a, const KeyedTracks& b) {
   const auto stop = [&](const std::string& what) {
     fail(ErrorCode::bad_pattern, in_file(b.pattern, "/keyframes"),
          "only one of the two motions has " + what +
-             "; the keys can be kept only if the two motions agree in this point");
+             ", so the keys cannot be kept. Both motions must be alike in this respect");
   };
   if (a.tracks.zmp.has_value() != b.tracks.zmp.has_value()) stop("keys of the ZMP");
   for (const Side side : {Side::left, Side::right})
@@ -462,14 +462,14 @@ void require_same_tracks(const KeyedTracks& a, const KeyedTracks& b) {
       fail(
           ErrorCode::bad_pattern, in_file(b.pattern, "/keyframes"),
           std::string("the ") + name_of(side) +
-              " foot has keys in one motion and swings in the other, so the keys of both cannot be "
-              "joined");
+              " foot has keys in one motion and swings in the other motion, so the keys of the two "
+              "motions cannot be joined");
   for (const size_t axis : {0, 1})
     if (a.tracks.cog[axis].has_value() != b.tracks.cog[axis].has_value())
       stop("keys of the COG position");
   if (a.pattern.full_model != b.pattern.full_model) stop("\"cog_model\": \"point_mass\"");
   if (a.tracks.torso.has_value() != b.tracks.torso.has_value() && (a.turns() || b.turns()))
-    stop("keys of the trunk, although the feet turn");
+    stop("keys of the trunk (and the feet turn)");
 }
 
 // Keyframes of the second pattern in the form that they have in the first one.
@@ -496,8 +496,7 @@ Pattern chained(const RobotModel& model, const MotionPart& first, const MotionPa
     refuse_viip_phases(*pattern, "joined");
     if (pattern->table || pattern->correction)
       fail(ErrorCode::bad_pattern, in_file(*pattern, pattern->table ? "/table" : "/correction"),
-           "a pattern with a table or a correction has no keys that "
-           "could be kept");
+           "a pattern with a table or a correction has no keys that can be kept");
   }
   const CommandSeries &a = first.series, &b = second.series;
   require_stand(first.pattern, a.samples.back(), "end");
@@ -647,7 +646,7 @@ RobotState standing_at(const RobotModel& model, const Pattern& pattern, const st
   if (!legs.solve(target, state, data).reached)
     fail(ErrorCode::bad_pattern, in_file(pattern, "ramp"),
          "posture '" + posture +
-             "' cannot be reached while the feet stay at their places in the motion; choose "
+             "' cannot be reached while the feet stay at their places in the motion. Choose "
              "another posture");
   return state;
 }

@@ -62,7 +62,7 @@ Pattern with_key_edited(const RobotModel& model, const Pattern& pattern, const K
     std::vector<std::string> times;
     for (const Keyframe& key : pattern.keyframes) times.push_back(text::exact(key.t));
     fail(ErrorCode::usage, in_file(pattern, "/keyframes"),
-         "there is no keyframe at " + text::exact(edit.at) + " s; the times of the keyframes are " +
+         "there is no keyframe at " + text::exact(edit.at) + " s. The times of the keyframes are " +
              text::join(times, ", ") + " s");
   }
   Keyframe key = *found;
@@ -92,7 +92,7 @@ Pattern with_key_edited(const RobotModel& model, const Pattern& pattern, const K
              "the keyframe would be at " + text::exact(*edit.to) +
                  " s, inside the VIIP phase from " + text::exact(begin) + " to " +
                  text::exact(pattern.phases[i].until) +
-                 " s, in which goals replace keys; choose a time outside this phase");
+                 " s, but in such a phase goals replace keys. Choose a time outside this phase");
     if (!edit.copy) result.keyframes.erase(found);
     key.t = *edit.to;
     put_key(result.keyframes, key);
@@ -161,7 +161,7 @@ void require_moved_together(const Isometry3d& shift, const Pattern& pattern) {
   for (const Keyframe& key : pattern.keyframes)
     if (std::abs(yaw) > 1e-9 && key.cog_x.has_value() != key.cog_y.has_value())
       fail(ErrorCode::bad_pattern, key.place,
-           "a motion that turns needs keys of COG x and y together; give both");
+           "in a motion that turns, a key of the COG must have both x and y. Give both");
 }
 
 Pattern alternated(const RobotModel& model, const Pattern& pattern, int times, bool close) {
@@ -180,8 +180,8 @@ Pattern alternated(const RobotModel& model, const Pattern& pattern, int times, b
                   [](const Keyframe& key) { return key.feet[0] || key.feet[1]; });
   if (foot_keys)
     fail(ErrorCode::bad_pattern, in_file(pattern, "/keyframes"),
-         "the feet have keys; give swings in the phases, which can be steps relative to the "
-         "other foot");
+         "the feet have keys, but only swings can be repeated. Give swings in the phases. A swing "
+         "can be a step relative to the other foot");
   const FootPlan plan(model, pattern);
   const auto first_swing = std::find_if(plan.phases().begin(), plan.phases().end(),
                                         [](const Phase& phase) { return phase.swing.has_value(); });

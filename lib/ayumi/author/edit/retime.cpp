@@ -17,8 +17,8 @@ namespace ayumi {
 
 Pattern retimed(const RobotModel& model, const Pattern& pattern, double scale) {
   if (!(scale >= 0.01 && scale <= 100))
-    fail(ErrorCode::usage,
-         "a time scale of " + text::exact(scale) + " is not possible; give 0.01 to 100");
+    fail(ErrorCode::usage, "a time scale of " + text::exact(scale) +
+                               " is not possible. Give a scale from 0.01 to 100");
   refuse_viip_phases(pattern, "retimed");
   Pattern result = pattern;
   if (scale == 1) return result;
@@ -56,13 +56,13 @@ Pattern stretched(const RobotModel& model, const Pattern& pattern, double begin,
     fail(ErrorCode::usage,
          "the part from " + text::exact(begin) + " to " + text::exact(end) +
              " s cannot be stretched by the factor " + text::exact(factor) +
-             "; the part must end after it begins, and the factor must be from 0.01 "
+             ". The part must end after it begins, and the factor must be from 0.01 "
              "to 100");
   refuse_viip_phases(pattern, "stretched");
   if (pattern.table || pattern.correction)
     fail(ErrorCode::bad_pattern, {pattern.file},
          "a time window of a table or of a correction cannot be "
-         "stretched; stretch the whole motion");
+         "stretched. Stretch the whole motion");
   // Times closer than this are equal [s]. Chosen: above rounding.
   constexpr double kSame = 1e-9;
   const double weight = model.mass() * kGravity;

@@ -64,9 +64,9 @@ void check_stairs(const RobotModel& model, const WalkParameters& p) {
   require_range("walk", "rise", p.rise, 0, 0.15 * leg_length(model), " m");
   if (p.stride < sole.front + sole.back + 2 * kStairClearance)
     fail(ErrorCode::usage, "walk: stride " + text::exact(p.stride) +
-                               " m is too short for stairs, because a stair must hold the whole "
-                               "sole, which is " +
-                               text::brief(sole.front + sole.back) + " m long; give at least " +
+                               " m is too short for stairs, because a stair must be longer than "
+                               "the sole, which is " +
+                               text::brief(sole.front + sole.back) + " m long. Give at least " +
                                text::brief(sole.front + sole.back + 2 * kStairClearance) + " m");
 }
 
@@ -333,7 +333,7 @@ Pattern walk_in_parts(const RobotModel& model, const std::vector<WalkParameters>
 Pattern stand_pattern(const RobotModel& model, double duration, double cog_height) {
   if (!(duration >= 0.01 && duration <= 3600))
     fail(ErrorCode::usage, "stand: duration " + text::exact(duration) +
-                               " s is out of range; give a value from 0.01 to 3600 s");
+                               " s is out of range. Give a value from 0.01 to 3600 s");
   Pattern pattern;
   pattern.name = "stand for " + text::brief(duration) + " s";
   pattern.robot = model.name();

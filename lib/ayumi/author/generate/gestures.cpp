@@ -253,11 +253,11 @@ Pattern wave_pattern(const RobotModel& model, const WaveParameters& p) {
   update_positions(model, state, data);
   const int hand = hand_body(model, p.side);
   if (hand < 0)
-    fail(ErrorCode::usage, "wave: " + model.name() + " has no " + name_of(p.side) +
-                               " arm of three joints or more; " +
-                               (hand_body(model, other(p.side)) >= 0
-                                    ? "choose the other hand"
-                                    : "write keys of the joints that it has instead"));
+    fail(
+        ErrorCode::usage,
+        "wave: " + model.name() + " has no " + name_of(p.side) + " arm of three joints or more. " +
+            (hand_body(model, other(p.side)) >= 0 ? "Choose the other hand"
+                                                  : "Write keys of the joints of its arm instead"));
   const std::vector<int> arm = limb_dofs(model, hand);
   const Vector3d point = limb_point(model, hand);
   const Vector3d shoulder =
@@ -296,7 +296,7 @@ Pattern wave_pattern(const RobotModel& model, const WaveParameters& p) {
          std::string("wave: the ") + name_of(p.side) + " hand stays " +
              text::fixed(1e3 * missing, 0) +
              " mm away from its places beside the head and in front of the shoulder, because "
-             "joints of the arm are at their limits; write keys of the arm's joints instead");
+             "joints of the arm are at their limits. Write keys of the arm's joints instead");
   const double rest = rest_time(model);
   PatternBuilder writer{pattern};
   // A joint that comes back to its limit would need a servo target beyond the limit. So an arm with

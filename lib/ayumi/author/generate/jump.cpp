@@ -104,9 +104,9 @@ Pattern jump_pattern(const RobotModel& model, const JumpParameters& p) {
   const double speed = 0.5 * kGravity * flight;
   const double push = to_millisecond(push_time(p.stoop, speed));
   if (push <= 0)
-    fail(ErrorCode::usage, "jump: a stoop of " + text::brief(p.stoop) +
-                               " m allows no push-off to a height of " + text::brief(p.height) +
-                               " m; choose another stoop or another height");
+    fail(ErrorCode::usage, "jump: with a stoop of " + text::brief(p.stoop) +
+                               " m, no push-off reaches a height of " + text::brief(p.height) +
+                               " m. Choose another stoop or another height");
   const double bounce = to_millisecond(bounce_time(p.stoop, speed));
   const double low = to_tenth_millimetre(ref - p.stoop);
 

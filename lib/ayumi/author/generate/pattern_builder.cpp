@@ -35,7 +35,7 @@ void require_range(const char* pattern, const char* name, double value, double l
   const auto bound = [](double x) { return x >= 1e3 ? text::fixed(x, 0) : text::brief(x); };
   fail(ErrorCode::usage,
        std::string(pattern) + ": " + name + " " + text::brief(value, kShownDigits) + unit +
-           " is out of range; give a value from " + bound(low) + " to " + bound(high) + unit);
+           " is out of range. Give a value from " + bound(low) + " to " + bound(high) + unit);
 }
 
 void require_cog_height(const char* pattern, double height, double leg) {

@@ -97,14 +97,14 @@ class Grounding {
     if (!ways.empty())
       result.push_back(
           "supporting soles are " + text::join(ways, " and ") +
-          " (--ground moves the robot up and down, so that the supporting soles touch the ground)");
+          " (--ground moves the robot up or down until the supporting soles touch the ground)");
     if (slides > kSaid) result.push_back("supporting soles slide by up to " + millimetres(slides));
     constexpr size_t kMost = 6;  // flights in a line. Chosen: a person can still read the line
     if (flight > 0)
       result.push_back("no sole rests on the ground for " + text::brief(flight, 3) + " s (" +
                        text::join_first(flights, kMost) +
-                       "). This time is taken as flight. --contact-height and --contact-speed "
-                       "decide when a sole counts as resting");
+                       "). Ayumi takes this time as flight. --contact-height and --contact-speed "
+                       "decide when a sole counts as resting on the ground");
     return result;
   }
 
@@ -241,11 +241,11 @@ class Grounding {
 void require_motion(const RobotModel& model, const RawMotion& motion) {
   if (!model.has_soles())
     fail(ErrorCode::bad_model, model.name() +
-                                   ": the robot has no soles; add the left and the right sole to "
+                                   ": the robot has no soles. Add the left and the right sole to "
                                    "\"soles\" in its sidecar");
   if (motion.theta.rows() < 6)
     fail(ErrorCode::bad_pattern, "a motion of " + std::to_string(motion.theta.rows()) +
-                                     " rows is too short; at least 6 rows are needed");
+                                     " rows is too short. At least 6 rows are needed");
 }
 
 // ---- Ends that were cut
@@ -367,7 +367,8 @@ CutEnds cut_ends(const RobotModel& model, const RawMotion& motion) {
   cut.begin = !first.empty();
   cut.end = !last.empty();
   const std::string peak =
-      ", so the torques have a peak at this time. --ramp S, such as 0.5, lets the motion ";
+      ", so the torques have a peak at this time. --ramp S (for example --ramp 0.5) lets the "
+      "motion ";
   if (cut.begin)
     cut.words.push_back("the recording begins while the robot moves (" + first +
                         "). A robot that plays the recording starts from rest" + peak +
@@ -387,7 +388,7 @@ RawMotion with_ramps(const RobotModel& model, RawMotion motion, double seconds) 
   if (ramp / 2 * (cut.begin + cut.end) >= rows)
     fail(ErrorCode::bad_pattern, "a ramp of " + text::brief(seconds) +
                                      " s is too long for a motion of " +
-                                     text::brief((rows - 1) * motion.dt) + " s; choose less than " +
+                                     text::brief((rows - 1) * motion.dt) + " s. Choose less than " +
                                      text::brief((rows - 1) * motion.dt) + " s");
   // Soles that move slowly look as if they carried the robot, so the contacts are those of the
   // original motion.

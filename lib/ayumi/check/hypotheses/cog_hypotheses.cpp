@@ -150,11 +150,11 @@ void stoops(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
           {Rank::geometry,
            {of.key_place(k),
             "t is " + seconds(low.t) + ", so the segment " +
-                (before ? "from here to the lift-off" : "from the landing to here") + " lasts " +
-                seconds(lasts) + ". The flight is so long that it needs a COG speed of " +
+                (before ? "from this key to the lift-off" : "from the landing to this key") +
+                " lasts " + seconds(lasts) + ". The flight needs a COG speed of " +
                 text::brief(speed, 2) + " m/s at its " + (before ? "beginning" : "end") +
-                ", and so the COG sinks " + text::fixed(1000 * sink, 0) +
-                " mm below the height of this key",
+                ". With this speed, the segment is so long that the COG sinks " +
+                text::fixed(1000 * sink, 0) + " mm below the height of this key",
             "with t = " + seconds(t)},
            [k = k, t](Pattern& p) { p.keyframes[k].t = t; },
            -sink});
@@ -180,17 +180,17 @@ void level_cog(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
   if (lift <= 0) return;
   for (const double share : {1.0, 0.99, 0.97, 0.94}) {
     const double height = std::round(1e4 * share * default_cog_height(of.model, of.pattern)) / 1e4;
-    made.push_back(
-        {Rank::missing,
-         {of.key_place(highest),
-          std::string("the ") + name_of(lifted) + " foot is " + text::fixed(1000 * lift, 0) +
-              " mm up, and the COG rises by half of this height, because the COG height without "
-              "keys is measured from the mean height of both soles",
-          "with keys of \"cog\": {\"height\": " + text::brief(height) +
-              "}, which keep the COG down,"},
-         [height](Pattern& p) {
-           for (Keyframe& key : p.keyframes) key.cog_height = height;
-         }});
+    made.push_back({Rank::missing,
+                    {of.key_place(highest),
+                     std::string("the ") + name_of(lifted) + " foot is lifted by " +
+                         text::fixed(1000 * lift, 0) +
+                         " mm. The COG rises by half of this height, because without "
+                         "keys the COG keeps its height above the mean of both soles",
+                     "with keys of \"cog\": {\"height\": " + text::brief(height) +
+                         "}, which keep the COG down,"},
+                    [height](Pattern& p) {
+                      for (Keyframe& key : p.keyframes) key.cog_height = height;
+                    }});
   }
 }
 
@@ -219,8 +219,8 @@ void held_cog(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
         {Rank::missing,
          {of.key_place(worst),
           words + " is " + text::brief(*(of.pattern.keyframes[worst].*key_of)) +
-              " m, while the middle of the feet that stand is at " + text::brief(feet_at, 3) + " m",
-          "without keys of " + words + " (the COG then follows the ZMP)"},
+              " m, but the middle of the standing feet is at " + text::brief(feet_at, 3) + " m",
+          "without keys of " + words + " (then the COG follows the ZMP)"},
          [key_of = key_of](Pattern& p) {
            for (Keyframe& key : p.keyframes) (key.*key_of).reset();
          }});
@@ -258,12 +258,13 @@ void lower_take_offs(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
          {of.key_place(off ? k : keys[*first + 1]),
           "the COG height is " + text::brief(std::max(leaves, lands)) + " m at the " +
               (off ? "lift-off" : "landing") + ", where the knees are bent by only about " +
-              text::fixed(bend, 0) + " deg; the knee of an almost straight leg turns very fast",
+              text::fixed(bend, 0) + " deg. The knee of an almost straight leg turns very fast",
           "with " + text::brief(leaves - by) + " m at the lift-off and " + text::brief(lands - by) +
               " m at the landing" +
-              (lower.size() > 2 ? ", and with a COG height that is lower by the same amount "
-                                  "at the ends of the other flights with straight legs,"
-                                : "")},
+              (lower.size() > 2
+                   ? " (and a COG height that is lower by the same amount at both ends "
+                     "of the other flights with straight legs),"
+                   : "")},
          [lower, by](Pattern& p) {
            for (const size_t key : lower) *p.keyframes[key].cog_height -= by;
          }});
@@ -310,7 +311,7 @@ void rests(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
     add(
         k,
         "the ZMP reaches its last place at " + seconds(until) + ", and the motion ends at " +
-            seconds(end) + ", so the COG has too little time to come to rest above the ZMP",
+            seconds(end) + ". The COG has too little time to come to rest above the ZMP",
         [longer](const std::string& more) {
           return longer ? "with a last phase that is " + more + " longer"
                         : "with one more phase with support \"both\" at the end, which lasts " +
@@ -334,7 +335,7 @@ void rests(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
     add(
         k,
         "the ZMP leaves its first place at " + seconds(from) +
-            ", so the COG has too little time to begin its movement from rest",
+            ". The COG has too little time to begin its movement from rest",
         [](const std::string& more) { return "with all times " + more + " later"; },
         [](Pattern& p, double more) {
           for (Phase& phase : p.phases) phase.until += more;
@@ -362,8 +363,8 @@ void missing_flight_keys(const ExaminedPattern& of, std::vector<Hypothesis>& mad
     made.push_back(
         {Rank::missing,
          {of.phase_place(i),
-          std::string("no keyframe gives the COG height at the ") + names[missing] + ", at " +
-              seconds(ends[missing]) + "; the height at the " + names[1 - missing] + " is " +
+          std::string("no keyframe gives the COG height at the ") + names[missing] + " (" +
+              seconds(ends[missing]) + "). The height at the " + names[1 - missing] + " is " +
               text::brief(height) + " m",
           "with a key of the same height there"},
          [t = ends[missing], height](Pattern& p) { keyframe_at(p, t).cog_height = height; }});
@@ -401,8 +402,8 @@ void shorter_flights(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
               text::fixed(1e3 * kGravity * lasts * lasts / 8, 0) + " mm",
           one ? "with a flight of " + seconds(shorter) + ", and everything after the flight " +
                     seconds(lasts - shorter) + " earlier"
-              : "with " + text::brief(share) +
-                    " times the length of every flight, and everything after a flight earlier"},
+              : "with every flight shortened to " + text::brief(share) +
+                    " times its length, and everything after a flight earlier"},
          [&of, flights](Pattern& p) {
            for (auto flight = flights.rbegin(); flight != flights.rend(); ++flight)
              p = stretched(of.model, p, flight->begin, flight->end, flight->factor);
@@ -461,13 +462,14 @@ void smaller_hops(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
             (flights.size() == 1 ? "the flight lasts " : "the first flight lasts ") +
                 seconds(lasts) + ", in which the robot rises by " +
                 text::fixed(1e3 * kGravity * lasts * lasts / 8, 0) + " mm",
-            "with a smaller hop: a flight of " + seconds(shorter) + " (a rise of " +
-                text::fixed(1e3 * kGravity * shorter * shorter / 8, 1) + " mm), a COG height of " +
-                height(first.off) + " m at the lift-off and " + height(first.land) +
-                " m at the landing, and the stoops (" + of.key_place(first.before) + " and " +
-                of.key_place(first.after) + ") " + seconds(begins) + " before the lift-off and " +
-                seconds(ends) + " after the landing" +
-                (flights.size() > 1 ? ", and the same for the other flights," : "")},
+            "make the hop smaller: let the flight last " + seconds(shorter) + " (a rise of " +
+                text::fixed(1e3 * kGravity * shorter * shorter / 8, 1) +
+                " mm). Let the COG height be " + height(first.off) + " m at the lift-off and " +
+                height(first.land) + " m at the landing. Let the COG be at its lowest place " +
+                seconds(begins) + " before the lift-off (" + of.key_place(first.before) + ") and " +
+                seconds(ends) + " after the landing (" + of.key_place(first.after) + "). " +
+                (flights.size() > 1 ? "Change the other flights in the same way. " : "") +
+                "With these changes"},
            [&of, flights, share, by, push](Pattern& p) {
              for (auto f = flights.rbegin(); f != flights.rend(); ++f) {
                const double length = f->end - f->begin;
@@ -493,21 +495,22 @@ void cog_height(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
   if (legs_are_folded(of.model, of.pattern, height)) {
     const double home = home_cog_height(of.model, of.pattern);
     for (const double share : {0.97, 0.94, 0.9, 0.85, 0.75})
-      made.push_back({Rank::amount,
-                      {"/defaults/cog_height",
-                       "the COG height is " + text::brief(height) + " m, " +
-                           text::fixed(100 * height / home, 0) + " % of that of the home posture",
-                       "with " + text::brief(share * home, 3) + " m"},
-                      [higher = share * home](Pattern& p) { p.cog_height = higher; }});
+      made.push_back(
+          {Rank::amount,
+           {"/defaults/cog_height",
+            "the COG height is " + text::brief(height) + " m, which is " +
+                text::fixed(100 * height / home, 0) + " % of the COG height in the home posture",
+            "with " + text::brief(share * home, 3) + " m"},
+           [higher = share * home](Pattern& p) { p.cog_height = higher; }});
     return;
   }
   for (const double share : {0.99, 0.97, 0.94, 0.9, 0.85})
-    made.push_back(
-        {Rank::pace,
-         {"/defaults/cog_height",
-          "the COG height is " + text::brief(height) + " m, at which the legs are nearly straight",
-          "with " + text::brief(share * height, 3) + " m"},
-         [lower = share * height](Pattern& p) { p.cog_height = lower; }});
+    made.push_back({Rank::pace,
+                    {"/defaults/cog_height",
+                     "the COG height is " + text::brief(height) +
+                         " m, and at this height the legs are nearly straight",
+                     "with " + text::brief(share * height, 3) + " m"},
+                    [lower = share * height](Pattern& p) { p.cog_height = lower; }});
 }
 
 }  // namespace ayumi::hypotheses

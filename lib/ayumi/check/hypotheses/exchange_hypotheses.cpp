@@ -78,7 +78,7 @@ void add_foothold_exchanges(
          {of.phase_place(phase),
           std::string("the footholds of this phase and of ") + of.phase_place(k) +
               " were perhaps exchanged",
-          "with the two exchanged"},
+          "with these two footholds exchanged"},
          [phase, k](Pattern& p) { std::swap(p.phases[phase].swing->to, p.phases[k].swing->to); }});
   }
 }
@@ -96,7 +96,7 @@ void phase_sides(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
                          (phase.swing ? std::string(" and a swing of the ") +
                                             name_of(phase.swing->foot) + " foot"
                                       : "") +
-                         "; perhaps left and right were exchanged",
+                         ". Perhaps left and right were exchanged",
                      std::string("with \"support\": \"") + name_of(meant) + "\"" +
                          (phase.swing ? std::string(" and a swing of the ") +
                                             name_of(other(phase.swing->foot)) + " foot"
@@ -153,8 +153,8 @@ void all_sides(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
         {Rank::geometry,
          {of.phase_place(crossed.front()),
           std::to_string(crossed.size()) + " of " + std::to_string(swings) +
-              " footholds lie on the side of the other foot (y is positive to the left); "
-              "perhaps left and right were exchanged",
+              " footholds lie on the side of the other foot (y is positive to the left). "
+              "Perhaps left and right were exchanged",
           instead},
          std::move(mend)});
   };
@@ -180,12 +180,13 @@ void swapped_axes(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
                        const Eigen::Vector3d& at,
                        const std::function<Eigen::Vector3d&(Pattern&)>& in) {
     if (std::abs(at.x() - at.y()) < kLeastMistake * leg_length(of.model)) return;
-    made.push_back({Rank::exchange,
-                    {place,
-                     words + " is at x = " + text::brief(at.x()) + " m and y = " +
-                         text::brief(at.y()) + " m; x is forward, and y is to the left",
-                     "with the two numbers exchanged"},
-                    [in](Pattern& p) { std::swap(in(p).x(), in(p).y()); }});
+    made.push_back(
+        {Rank::exchange,
+         {place,
+          words + " is at x = " + text::brief(at.x()) + " m and y = " + text::brief(at.y()) +
+              " m. The x axis points forward, and the y axis points to the left",
+          "with the two numbers exchanged"},
+         [in](Pattern& p) { std::swap(in(p).x(), in(p).y()); }});
     made.back().only_if_enough = true;
   };
   for (size_t i = 0; i < of.pattern.phases.size(); ++i)
@@ -205,10 +206,10 @@ void swapped_axes(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
 
 void starts(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
   if (!of.pattern.start_feet[0] || !of.pattern.start_feet[1]) return;
-  made.push_back(
-      {Rank::exchange,
-       {"/start", "the left and the right foot were perhaps exchanged", "with the two exchanged"},
-       [](Pattern& p) { std::swap(p.start_feet[0], p.start_feet[1]); }});
+  made.push_back({Rank::exchange,
+                  {"/start", "the left and the right foot were perhaps exchanged",
+                   "with the places of both feet exchanged"},
+                  [](Pattern& p) { std::swap(p.start_feet[0], p.start_feet[1]); }});
 }
 
 void key_sides(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
@@ -227,15 +228,15 @@ void key_sides(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
           {Rank::exchange,
            {of.key_place(i),
             std::string("the key moves the ") + name_of(side) +
-                " foot, which carries the robot; perhaps left and right were exchanged",
-            std::string("with the ") + name_of(other(side)) + " foot in its place"},
+                " foot, which carries the robot. Perhaps left and right were exchanged",
+            std::string("with this key for the ") + name_of(other(side)) + " foot"},
            [i, s, o](Pattern& p) { std::swap(p.keyframes[i].feet[s], p.keyframes[i].feet[o]); }});
     }
     if (key.feet[0] && key.feet[1])
       made.push_back(
           {Rank::exchange,
            {of.key_place(i), "the left and the right foot were perhaps exchanged",
-            "with the two exchanged"},
+            "with the places of both feet exchanged"},
            [i](Pattern& p) { std::swap(p.keyframes[i].feet[0], p.keyframes[i].feet[1]); }});
     if (!map || key.joints.empty()) continue;
     // Whether no other key moves the joints of this key.
@@ -249,8 +250,8 @@ void key_sides(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
         {is_alone ? Rank::slip : Rank::sign,
          {of.key_place(i),
           "the key moves " + key.joints.begin()->first +
-              (key.joints.size() > 1 ? " and others" : "") +
-              "; perhaps left and right were exchanged",
+              (key.joints.size() > 1 ? " and other joints" : "") +
+              ". Perhaps left and right were exchanged",
           "with keys for the joints of the other side"},
          [&of, i, map](Pattern& p) {
            std::map<std::string, double> joints;
@@ -304,8 +305,8 @@ void unlike_sides(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
                       {place,
                        pair.wrong + " (" + of.angle(pair.angle) + ") and " + pair.partner + " (" +
                            of.angle(joints.at(pair.partner)) +
-                           ") are not mirror images; all other pairs of joints in this posture "
-                           "are",
+                           ") are not mirror images. All other pairs of joints in this posture "
+                           "are mirror images",
                        "with " + pair.wrong + " at " + of.angle(pair.meant)},
                       [in, pair](Pattern& p) { in(p).at(pair.wrong) = pair.meant; }});
   };

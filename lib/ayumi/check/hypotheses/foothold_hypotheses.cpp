@@ -55,7 +55,7 @@ void turns(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
        {of.phase_place(second.front()),
         "the " + foot + " foot's step turns by " + of.angle(turn_of(of.pattern.phases[second[0]])) +
             " after the " + ahead + " foot has turned by " + of.angle(turn) +
-            "; \"turn\" is the angle to the other foot, so all steps turn the robot by " +
+            ". \"turn\" is the angle to the other foot, so all steps together turn the robot by " +
             of.angle(sum),
         "with \"turn\" 0 in " + (n > 1 ? "the " + std::to_string(n) + " steps" : "the step") +
             " of the " + foot + " foot, which then " + (n > 1 ? "land" : "lands") +
@@ -89,11 +89,11 @@ void near_footholds(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
            {of.phase_place(i),
             std::string("the ") + name_of(side) + " foot lands " +
                 text::fixed(1e3 * from_stance.head<2>().norm(), 0) + " mm from the " +
-                name_of(other(side)) + " foot, and at the beginning they are " +
+                name_of(other(side)) + " foot. At the beginning of the motion, the feet are " +
                 text::fixed(1e3 * std::abs(apart), 0) + " mm apart",
             "with \"to\" = [" + text::brief(place.x()) + ", " + text::brief(place.y()) + ", ...]" +
                 (has_later_place(of, i)
-                     ? ", and all later footholds also moved by [" + text::brief(moved.x(), 3) +
+                     ? ", and with all later footholds moved by [" + text::brief(moved.x(), 3) +
                            ", " + text::brief(moved.y(), 3) + "] m,"
                      : "")},
            [i, moved](Pattern& p) {
@@ -124,10 +124,11 @@ void lesser_turns(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
           {Rank::amount,
            {of.phase_place(i),
             std::string("the ") + name_of(swing.foot) + " foot turns by " + of.angle(turn) +
-                " against the " + name_of(other(swing.foot)) + " foot",
+                " relative to the " + name_of(other(swing.foot)) + " foot",
             "with a yaw of " + of.angle(swing.to.rpy.z() + less) +
-                (has_later_place(of, i) ? ", and all later footholds turned about this one by " +
-                                              of.angle(less) + " (the turn then takes more steps),"
+                (has_later_place(of, i) ? ", and with all later footholds turned about this "
+                                          "foothold by " +
+                                              of.angle(less) + " (then the turn takes more steps),"
                                         : "")},
            [i, less](Pattern& p) {
              const Eigen::Vector3d about = p.phases[i].swing->to.position;
@@ -162,9 +163,9 @@ void ground_heights(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
     return;
   made.push_back({Rank::geometry,
                   {raised.front().place,
-                   raised.front().words + "; this is the first of " +
-                       std::to_string(raised.size()) + " such heights",
-                   "with all of them on the declared ground"},
+                   raised.front().words + ". This is the first of " +
+                       std::to_string(raised.size()) + " heights that differ from the ground",
+                   "with all these heights on the declared ground"},
                   [raised](Pattern& p) {
                     for (const RaisedFoot& foot : raised) foot.mend(p);
                   }});

@@ -48,8 +48,10 @@ void swings(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
         {Rank::missing,
          {of.phase_place(i),
           std::string("the robot stands on the ") + name_of(other(idle)) + " foot alone, but the " +
-              name_of(idle) + " foot stays on the ground; its swing may be missing",
-          "with a swing to a place " + text::brief(step.forward, 3) + " m ahead of the other foot"},
+              name_of(idle) + " foot stays on the ground. Perhaps a swing of the " + name_of(idle) +
+              " foot is missing",
+          "with such a swing to a place " + text::brief(step.forward, 3) +
+              " m ahead of the other foot"},
          [i, idle, lift, step](Pattern& p) {
            p.phases[i].swing = Swing{.foot = idle, .to = {}, .lift = lift, .step = step};
          }});
@@ -72,8 +74,8 @@ void double_supports(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
          {of.phase_place(i),
           std::string("the robot passes from the ") + name_of(before.support) + " foot to the " +
               name_of(phase.support) +
-              " foot at once; a phase with support \"both\" may be missing before this phase",
-          "with such a phase until " + seconds(until)},
+              " foot at once. Perhaps a phase with support \"both\" is missing before this phase",
+          "with a phase with support \"both\" until " + seconds(until)},
          [i, until](Pattern& p) {
            Phase both;
            both.until = until;
@@ -92,8 +94,8 @@ void leg_keys(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
            {of.key_place(i),
             entry.first +
                 " is a joint of a leg. As soon as one leg joint has a key, all leg joints follow "
-                "only their keys, and the legs are not solved from the feet and the COG",
-            "without keys of leg joints (give the COG, the feet or the torso instead)"},
+                "only their keys, and Ayumi no longer computes them from the feet and the COG",
+            "without keys of leg joints (give keys of the COG, the feet or the torso instead),"},
            [&of](Pattern& p) {
              for (Keyframe& key : p.keyframes)
                std::erase_if(key.joints, [&](const auto& e) {
@@ -122,7 +124,7 @@ void superfluous_keys(const ExaminedPattern& of, std::vector<Hypothesis>& made) 
       k < keys.size())
     add(k,
         "f_z is " + text::brief(*keys[k].fz) +
-            " N, but the force follows from the weight and from the movement of the COG",
+            " N, but this force follows from the weight and from the movement of the COG",
         "without keys of f_z", [](Pattern& p) {
           for (Keyframe& key : p.keyframes) key.fz.reset();
         });
@@ -131,7 +133,8 @@ void superfluous_keys(const ExaminedPattern& of, std::vector<Hypothesis>& made) 
   if (cog < keys.size() && zmp < keys.size()) {
     const std::string both = "both the COG (" + of.key_place(cog) + ") and the ZMP (" +
                              of.key_place(zmp) +
-                             ") have keys, but one of them follows from the other";
+                             ") have keys, but the COG follows from the ZMP, and the ZMP follows "
+                             "from the COG";
     add(zmp, both, "without keys of the ZMP", [](Pattern& p) {
       for (Keyframe& key : p.keyframes) key.zmp.reset();
     });
@@ -148,7 +151,7 @@ void superfluous_keys(const ExaminedPattern& of, std::vector<Hypothesis>& made) 
   if (const size_t k = first(is_inside); k < keys.size())
     add(k,
         "the COG has a key at " + seconds(keys[k].t) +
-            ", inside a flight, where it can only follow its parabola",
+            ", inside a flight, but in flight the COG can only follow its parabola",
         "without keys of the COG inside the flight", [&of, is_inside](Pattern& p) {
           for (Keyframe& key : p.keyframes)
             if (is_inside(key)) {

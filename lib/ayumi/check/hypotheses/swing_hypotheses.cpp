@@ -76,19 +76,23 @@ Hypothesis smaller_swing(const ExaminedPattern& of, const std::vector<AirKey>& k
     moved = std::max(moved, (place - key.position).norm());
     places.emplace_back(key.key, place);
     if (texts.size() < kPlacedKeys)
-      texts.push_back(written_position(place) + " in " + of.key_place(key.key));
+      texts.push_back("to " + written_position(place) + " in " + of.key_place(key.key));
   }
   const double share = std::min(away, up);
+  std::string later;
   if (keys.size() > kPlacedKeys)
-    texts.push_back("and in the later keys of this swing at " + text::fixed(100 * share, 0) +
-                    " % of the " + (away == 1 ? "vertical " : (up == 1 ? "level " : "")) +
-                    "distance from the line between the places of the foot on the ground");
+    later = std::string(" In the later keys, reduce the ") +
+            (away == 1 ? "vertical " : (up == 1 ? "horizontal " : "")) +
+            "distance of the foot from the line between its two places on the ground to " +
+            text::fixed(100 * share, 0) + " %.";
+  const std::string nearer = "nearer to its place on the ground";
   const auto s = static_cast<size_t>(index(side));
   return {Rank::amount,
           {of.key_place(keys.front().key), words.written,
-           "with all keys of this swing " +
-               (away == 1 ? words.lower : (up == 1 ? "nearer" : "nearer and " + words.lower)) +
-               " (the " + name_of(side) + " foot at " + text::join(texts, ", ") + "),"},
+           "move the " + std::string(name_of(side)) + " foot " +
+               (away == 1 ? words.lower : (up == 1 ? nearer : nearer + " and " + words.lower)) +
+               " in all keys of this swing: " + text::join(texts, ", ") + "." + later +
+               " With these changes"},
           [places, s](Pattern& p) {
             for (const auto& [key, place] : places) p.keyframes[key].feet[s]->position = place;
           },
@@ -220,13 +224,15 @@ void level_feet(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
           else if (!by.isZero() && ++more <= kTurnedKeys)
             others += "; in " + of.key_place(lean.key) + ", " + turned;
         }
-        if (more > kTurnedKeys) others += "; in its later keys, by the lean of the leg there";
+        if (more > kTurnedKeys)
+          others += "; in the later keys of this foot, turned by the lean of the leg";
         made.push_back(
             {Rank::geometry,
              {of.key_place(place),
               std::string("the ") + name_of(side) + " foot stays level while its leg leans by " +
-                  text::join(ways, " and ") + ", so the ankle bends by the same angle",
-              "with the foot turned with the leg (" + here + others + "),"},
+                  text::join(ways, " and ") + ". The ankle has to bend by the same angle",
+              "turn the foot with its leg: " + here + others +
+                  (others.empty() ? ". With this change" : ". With these changes")},
              [leans, turn, s](Pattern& p) {
                for (const Lean& lean : leans)
                  p.keyframes[lean.key].feet[s]->rpy.head<2>() = turn(lean);

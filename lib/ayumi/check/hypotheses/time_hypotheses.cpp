@@ -112,8 +112,8 @@ void ends_at_keys(const ExaminedPattern& of, size_t phase, double after,
         {Rank::slip,
          {of.phase_place(phase),
           "the phase ends at " + seconds(until) +
-              ", but no keyframe moves the ZMP or a foot at this time; " + of.key_place(k) +
-              " is at " + seconds(key.t) + ", but no phase ends at that time",
+              ", but no keyframe moves the ZMP or a foot at this time. " + of.key_place(k) +
+              " is at " + seconds(key.t) + ", but no phase ends at " + seconds(key.t),
           "with an end at " + seconds(key.t)},
          [phase, t = key.t](Pattern& p) { p.phases[phase].until = t; },
          kCoincidence});
@@ -138,7 +138,7 @@ void durations(const ExaminedPattern& of, size_t phase, std::vector<Hypothesis>&
                          ", so the times of keyframes do not fit the ends of the phases",
                      "with a duration of " + seconds(meant) + " (then " +
                          text::counted(static_cast<size_t>(more), "more keyframe") +
-                         (more == 1 ? " is" : " are") + " at the end of a phase)"},
+                         (more == 1 ? " is" : " are") + " at the end of a phase),"},
                     mend,
                     kCoincidence - static_cast<double>(more)});
   }
@@ -174,11 +174,11 @@ void key_times(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
            end != of.ends.end() && *end < after; ++end)
         if (!of.has_key_of_contact(*end))
           add(Rank::slip, *end,
-              ", but no phase ends at this time; a phase ends at " + seconds(*end) +
-                  ", but no keyframe moves the ZMP or a foot at that time",
+              ", but no phase ends at this time. A phase ends at " + seconds(*end) +
+                  ", but no keyframe moves the ZMP or a foot at " + seconds(*end),
               kCoincidence);
     if (i == 0 || (!too_early && belongs_to_phase(of, keys[i]))) continue;
-    const std::string lasts = ", so the segment before it lasts " + seconds(in) +
+    const std::string lasts = ", so the segment before this key lasts " + seconds(in) +
                               " and the segment after it lasts " + seconds(out);
     // The key is moved into the longer one of its two neighbouring segments, and also into the
     // shorter one.

@@ -81,7 +81,7 @@ void target_unit(const FarTarget& target, std::vector<Hypothesis>& made) {
     made.push_back(
         {Rank::slip,
          {target.place,
-          target.name + " is aimed at " + point(target.position) + "; lengths are in metres",
+          target.name + " is aimed at " + point(target.position) + ". Lengths are in metres",
           std::string("with these numbers read in ") + unit + ", which gives " +
               point(factor * target.position) + ","},
          [in = target.in, factor = factor](Pattern& p) { in(p) *= factor; }});
@@ -98,7 +98,7 @@ void zmp_point(const ExaminedPattern& of, size_t key, std::vector<Hypothesis>& m
     made.push_back({Rank::slip,
                     {of.key_place(key),
                      "the ZMP is at (" + text::brief(zmp->point.x()) + ", " +
-                         text::brief(zmp->point.y()) + ") m; lengths are in metres",
+                         text::brief(zmp->point.y()) + ") m. Lengths are in metres",
                      std::string("with these numbers read in ") + unit + ", which gives (" +
                          text::brief(meant.x()) + ", " + text::brief(meant.y()) + ") m,"},
                     [key, factor = factor](Pattern& p) { p.keyframes[key].zmp->point *= factor; }});
@@ -136,10 +136,12 @@ void time_units(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
   for (const auto& [unit, factor] :
        {std::pair("ms", 1e-3), std::pair("hundredths of a second", 1e-2)})
     if (of.pattern.duration() * factor > 0.1 && of.pattern.duration() > 30)
-      made.push_back({Rank::unit,
-                      {"/phases", "the motion lasts " + seconds(of.pattern.duration()),
-                       std::string("times are in seconds; with all times read as ") + unit},
-                      [factor = factor](Pattern& p) { scale_times(p, factor); }});
+      made.push_back(
+          {Rank::unit,
+           {"/phases",
+            "the motion lasts " + seconds(of.pattern.duration()) + ". Times are in seconds",
+            std::string("with all times read as ") + unit},
+           [factor = factor](Pattern& p) { scale_times(p, factor); }});
 }
 
 // Perhaps only the phases or only the keyframes were stretched in time: tries one factor for the
@@ -165,16 +167,16 @@ void stretched_keys(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
     }
   }
   if (most < kManyKeys || most <= 2 * now || 2 * most < static_cast<long>(keys.size())) return;
-  made.push_back(
-      {Rank::unit,
-       {"/keyframes",
-        "the times of the keyframes do not fit those of the phases: " + std::to_string(now) +
-            " of " + std::to_string(keys.size()) + " keyframes are at the end of a phase",
-        "with the times of all keyframes multiplied by " + text::brief(best) + " (then " +
-            std::to_string(most) + " keyframes are at the end of a phase)"},
-       [best](Pattern& p) {
-         for (Keyframe& key : p.keyframes) key.t *= best;
-       }});
+  made.push_back({Rank::unit,
+                  {"/keyframes",
+                   "the times of the keyframes do not fit the times of the phases. Only " +
+                       std::to_string(now) + " of " + std::to_string(keys.size()) +
+                       " keyframes are at the end of a phase",
+                   "with the times of all keyframes multiplied by " + text::brief(best) +
+                       " (then " + std::to_string(most) + " keyframes are at the end of a phase),"},
+                  [best](Pattern& p) {
+                    for (Keyframe& key : p.keyframes) key.t *= best;
+                  }});
 }
 
 // Tries smaller units for all lengths if at least half of the lengths are larger than three leg
@@ -209,7 +211,7 @@ void target_units(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
            {far.front().place,
             far.front().name + " is aimed at " + point(far.front().position) + ", and there " +
                 (far.size() > 2 ? "are " : "is ") + text::counted(far.size() - 1, "more target") +
-                " at such a distance; lengths are in metres",
+                " at such a distance. Lengths are in metres",
             std::string("with these targets read in ") + unit},
            [far, factor = factor](Pattern& p) {
              for (const FarTarget& target : far) target.in(p) *= factor;
@@ -231,7 +233,7 @@ void footholds(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
                       {place,
                        std::string("the ") + name_of(side) + " foot is at (" +
                            text::brief(foot.position.x()) + ", " + text::brief(foot.position.y()) +
-                           ", " + text::brief(foot.position.z()) + ") m; lengths are in metres",
+                           ", " + text::brief(foot.position.z()) + ") m. Lengths are in metres",
                        std::string("with these numbers read in ") + unit + ", which gives (" +
                            text::brief(meant.x()) + ", " + text::brief(meant.y()) + ", " +
                            text::brief(meant.z()) + ") m,"},

@@ -76,7 +76,7 @@ void missing_zmp_keys(const ExaminedPattern& of, size_t phase, size_t wrong,
   made.push_back({Rank::exchange,
                   {of.phase_place(phase),
                    "the robot stands on the " + foot + " foot from " + seconds(begin) + " to " +
-                       seconds(until) + ", but no keyframe puts the ZMP under this foot; " +
+                       seconds(until) + ", but no keyframe puts the ZMP under this foot. " +
                        of.key_place(wrong) + " puts the ZMP " + zmp_words(of, wrong),
                    "with \"zmp\": \"" + foot + "\" in keyframes at these two times"},
                   [begin, until, place = place_under(support)](Pattern& p) {
@@ -107,7 +107,8 @@ void mirrored_points(const ExaminedPattern& of, size_t phase, const std::vector<
        {of.phase_place(phase),
         std::string("the robot stands on the ") + name_of(stance_of(support)) + " foot, but " +
             text::join(places, " and ") + (several ? " put" : " puts") +
-            " the ZMP on the other side" + (one_y ? " (y is " + text::brief(y) + " m)" : ""),
+            " the ZMP on the side of the other foot" +
+            (one_y ? " (y is " + text::brief(y) + " m)" : ""),
         std::string("with the other sign of y") + (several ? " in these keyframes" : "") +
             (one_y ? " (" + text::brief(-y) + " m)" : "")},
        [wrong](Pattern& p) {
@@ -136,7 +137,7 @@ void all_zmp_keys(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
         std::string("the robot stands on the ") + name_of(stance_of(first.support)) +
             " foot, but " + of.key_place(wrong_zmp_keys(of, phases.front()).front()) +
             " puts the ZMP " + zmp_words(of, wrong_zmp_keys(of, phases.front()).front()) +
-            "; the ZMP is wrong in the same manner in " + std::to_string(phases.size()) + " phases",
+            ". The ZMP is wrong in the same manner in " + std::to_string(phases.size()) + " phases",
         "with the ZMP under the foot that carries the robot in each of these phases"},
        [meant](Pattern& p) {
          for (const auto& [k, place] : meant) p.keyframes[k].zmp->place = place;
@@ -160,8 +161,8 @@ void zmp_sides(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
   if (wrong < 2 || 2 * wrong <= single) return;
   made.push_back({Rank::exchange,
                   {"/keyframes",
-                   "the keys put the ZMP under the foot that does not carry the robot; "
-                   "perhaps left and right were exchanged",
+                   "the keys put the ZMP under the foot that does not carry the robot. "
+                   "Perhaps left and right were exchanged",
                    "with left and right exchanged in all ZMP keys"},
                   [](Pattern& p) {
                     for (Keyframe& key : p.keyframes) {

@@ -210,7 +210,7 @@ DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
   if (p.k && (*p.k <= 1 || *p.d <= 0))
     fail(ErrorCode::usage,
          "controller gains: k = " + text::brief(*p.k) + ", d = " + text::brief(*p.d) +
-             " never bring the COG back; equations (18)(19) need K > 1 and D > 0");
+             " never bring the COG back. Equations (18)(19) need K > 1 and D > 0");
   check_baseline(p);
   if (!p.k && p.pole_ratio <= 0)
     fail(ErrorCode::usage, "controller gains: q is " + text::brief(p.pole_ratio) +

@@ -180,7 +180,7 @@ ViipParams viip_params(const RobotModel& model, const ControllerSpec& spec) {
                                  text::brief(*fields.at(name)) + "; it must be above 0");
   if (p.height_damping < 1 - 1e-9)
     fail(ErrorCode::usage, "controller gains: with dz = " + text::brief(p.height_damping) +
-                               " the COG height overshoots; dz must be at least 1, because "
+                               " the COG height overshoots. dz must be at least 1, because "
                                "equation (25) needs K_Dz^2 >= 4 m K_Pz");
   if (p.recovery > 1)
     fail(ErrorCode::usage,

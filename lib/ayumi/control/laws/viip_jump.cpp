@@ -189,20 +189,21 @@ ViipJump::ViipJump(const RobotModel& model, const ActuatorLimits& limits, const 
       zmp_(filter_.zmp()),
       left_(goal.times) {
   if (!(goal.height > 0) || !(goal.stoop > 0) || goal.times < 1)
-    fail(ErrorCode::bad_pattern, "jump: height " + text::brief(goal.height) + " m, stoop " +
-                                     text::brief(goal.stoop) + " m and times " +
-                                     std::to_string(goal.times) + " must be above 0");
+    fail(ErrorCode::bad_pattern, "jump: the height is " + text::brief(goal.height) +
+                                     " m, the stoop is " + text::brief(goal.stoop) +
+                                     " m and the number of jumps is " + std::to_string(goal.times) +
+                                     "; all three must be above 0");
   if (goal.stoop > 0.5 * height_ || goal.height > 2 * height_)
     fail(ErrorCode::bad_pattern,
-         "jump: the stoop is " + text::brief(goal.stoop) + " m and the height " +
-             text::brief(goal.height) + " m; with the COG at " + text::brief(height_) +
+         "jump: the stoop is " + text::brief(goal.stoop) + " m and the height is " +
+             text::brief(goal.height) + " m. With the COG at a height of " + text::brief(height_) +
              " m, the stoop must be at most " + text::brief(0.5 * height_) +
-             " m and the height at most " + text::brief(2 * height_) + " m");
+             " m and the height must be at most " + text::brief(2 * height_) + " m");
   if (goal.release == JumpGoal::Release::spring && goal.height <= 0.5 * goal.stoop)
     fail(ErrorCode::bad_pattern,
          "jump: with the release 'spring' the stoop must be less than twice the height of " +
-             text::brief(goal.height) + " m; with a stoop of " + text::brief(goal.stoop) +
-             " m, f_z would never be zero; choose a smaller stoop or a larger height, or set the "
+             text::brief(goal.height) + " m. With a stoop of " + text::brief(goal.stoop) +
+             " m, f_z would never be zero. Choose a smaller stoop or a larger height, or set the "
              "release to 'ref_z'");
   offset_ = held.cog.head<2>() - middle_of_soles(model, held.feet);
   plan_.feet = start.plan.feet;

@@ -77,8 +77,8 @@ class Reader {
       fail(ErrorCode::bad_file, {file_}, "the file has no row with targets for the motors");
     const std::string &first = result_.first_words, &last = result_.last_words;
     if (!last.empty() && last.size() < first.size() && first.starts_with(last))
-      stop("the row ends with '" + last + "', but the first row with '" + first +
-               "'; the file may be truncated",
+      stop("the row ends with '" + last + "', but the first row ends with '" + first +
+               "'. The file may be truncated; copy it again",
            true);
     if (bare_) set_bare_times();
     set_tick();
@@ -105,8 +105,8 @@ class Reader {
       stop("'" + std::string(cells[0].substr(0, 24)) + "' is not an interval in milliseconds");
     if (cells.size() < 3 || (cells[1] != "2" && cells[1] != "3"))
       stop(
-          "expected an interval, then the code 2 (targets follow) or 3 (a command to one device "
-          "follows)");
+          "a row must begin with an interval [ms] and a code. The code is 2 if targets follow, and "
+          "3 if a command to one device follows");
     if (cells[1] == "3")
       ++result_.general_commands;
     else
@@ -124,7 +124,7 @@ class Reader {
   void find_layout(size_t columns, bool with_interval) {
     if (!result_.rows.empty()) {
       if (columns != result_.layout.columns())
-        stop("the row has " + std::to_string(columns) + " columns, but the rows before have " +
+        stop("the row has " + std::to_string(columns) + " columns, but each row before it has " +
              std::to_string(result_.layout.columns()));
       return;
     }
@@ -136,14 +136,15 @@ class Reader {
     if (std::all_of(layouts_.begin(), layouts_.end(),
                     [](const SequenceLayout& layout) { return layout.motors == 0; }))
       stop(
-          "the rows are counts of motors, but this robot has no encoders; name the robot of the "
-          "file, or add \"encoders\" to the sidecar of this robot",
+          "the rows are encoder counts of motors, but this robot has no encoders. With --robot, "
+          "name "
+          "the robot that the file was made for, or add \"encoders\" to the sidecar of this robot",
           true);
     stop("the row has " + std::to_string(columns) + " columns, but " +
          (with_interval ? "sequences" : "rows without an interval") + " of this robot have " +
          list_of(layouts_, with_interval) +
-         "; add the layout of this file to \"layouts\" in the sidecar, or name the robot of the "
-         "file");
+         ". Add the layout of this file to \"layouts\" in the sidecar, or name the robot that the "
+         "file was made for");
   }
 
   void read_targets(const std::vector<std::string_view>& cells, std::string_view line) {
@@ -195,9 +196,8 @@ class Reader {
       fail(ErrorCode::bad_file, {file_},
            "the file has " + std::to_string(columns) + " columns in " +
                (fraction_ ? "radians" : "counts") +
-               " and no interval column, and this robot has no such layout; "
-               "add this layout to \"layouts\" in "
-               "the sidecar");
+               ", and none of them is an interval. This robot has no layout with such columns; "
+               "add the layout to \"layouts\" in the sidecar");
     result_.layout = *found;
     const int interval = given_ > 0                    ? given_
                          : found->intervals_ms.empty() ? 1
@@ -229,11 +229,13 @@ class Reader {
 // The degree of freedom of each device of a layout, in device order.
 std::vector<int> dofs_by_device(const RobotModel& model, const SequenceLayout& layout) {
   const std::string need =
-      layout.motors == 0 ? std::string(
-                               "; in \"encoders\" of the sidecar, give every joint its device and "
-                               "its counts per degree")
-                         : "; the layout '" + layout.name + "' needs each of the devices 1 to " +
-                               std::to_string(layout.motors) + " once, with counts per degree";
+      layout.motors == 0
+          ? std::string(
+                "; in \"encoders\" of the sidecar, give the device and the counts per "
+                "degree of every joint")
+          : ". For the layout '" + layout.name +
+                "', \"encoders\" of the sidecar must give each of the devices 1 to " +
+                std::to_string(layout.motors) + " to exactly one joint, with its counts per degree";
   std::vector<int> dofs(static_cast<size_t>(layout.motors), -1);
   for (int dof = 0; dof < model.dof_count(); ++dof) {
     const Dof& joint = model.dofs()[static_cast<size_t>(dof)];
@@ -379,7 +381,9 @@ std::string refusal_of_interval(const RobotModel& model, const SequenceLayout& l
   const double ms = 1000 * dt;
   const int interval = static_cast<int>(std::round(ms));
   if (interval < 1 || std::abs(ms - interval) > 1e-6)
-    return "a HOAP sequence needs a whole number of milliseconds between rows, but the table has " +
+    return "in a HOAP sequence, the time between two rows is a whole number of milliseconds, but "
+           "in "
+           "the table it is " +
            text::brief(ms) + " ms";
   const std::vector<int>& allowed = layout.intervals_ms;
   if (allowed.empty() || std::find(allowed.begin(), allowed.end(), interval) != allowed.end())

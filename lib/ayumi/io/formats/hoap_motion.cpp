@@ -34,8 +34,9 @@ void refuse_lost_motion(const HoapFile& sequence, int device, const RobotModel& 
          name + " moves from " + text::brief(low) + " to " + text::brief(high) + unit +
              ", but no joint of '" + model.name() +
              "' has this device; add the device to \"encoders\" in the sidecar");
-  filled.push_back(name + " is not on this robot and is ignored; its target is always " +
-                   text::brief(low) + unit);
+  filled.push_back(name +
+                   " is ignored, because no joint of this robot has this device. Its target is " +
+                   text::brief(low) + unit + " in every row");
 }
 
 void refuse_zeros(const HoapFile& sequence, const std::string& file) {
@@ -44,7 +45,7 @@ void refuse_zeros(const HoapFile& sequence, const std::string& file) {
       if (value != 0) return;
   if (sequence.rows.size() > 1)
     fail(ErrorCode::bad_file, {file},
-         "every value of every motor is 0, so nothing was recorded; record again");
+         "all values of all motors are 0, so nothing was recorded; record again");
 }
 
 // A step that no motor board passes on shows that the motion in the file is discontinuous, or that
@@ -65,10 +66,10 @@ void say_largest_step(const HoapFile& sequence, std::vector<std::string>& filled
     }
   }
   if (device > 0)
-    filled.push_back("device " + std::to_string(device) + " jumps by " + text::brief(worst) +
-                     " counts/ms before row " + std::to_string(row + 1) +
-                     ", but motor boards allow at most " + text::brief(limit) +
-                     " counts/ms; rows may be missing there");
+    filled.push_back("at row " + std::to_string(row + 1) + ", the target of device " +
+                     std::to_string(device) + " changes by " + text::brief(worst) +
+                     " counts/ms from the row before, but motor boards allow at most " +
+                     text::brief(limit) + " counts/ms. Rows may be missing before this row");
 }
 
 /// The joints whose angles leave their position limits in some row.
@@ -101,17 +102,16 @@ void apply_signs(const RobotModel& model, bool encoder_signs, Eigen::MatrixXd& t
   if (encoder_signs)
     notes.push_back("angles in radians have the signs of the encoders, so the angles of " +
                     (negative.empty() ? std::string("no joint") : text::join(negative, ", ")) +
-                    " were negated (--signs joint takes all angles as they are)");
+                    " were negated. With --signs joint, no angle is negated");
   else
     notes.push_back(
-        "angles in radians have the signs of the joints, so no angle was negated (--signs encoder "
-        "applies "
-        "the signs of the encoders)");
+        "angles in radians have the signs of the joints, so no angle was negated. With --signs "
+        "encoder, the angles get the signs of the encoders");
   const std::vector<std::string> beyond = beyond_limits(model, theta);
   if (beyond.size() > beyond_limits(model, other).size())
     notes.push_back("with these signs, angles of " + text::join(beyond, ", ") +
-                    " exceed the position limits; with `--signs " +
-                    (encoder_signs ? "joint" : "encoder") + "`, fewer joints exceed them");
+                    " exceed the position limits. With `--signs " +
+                    (encoder_signs ? "joint" : "encoder") + "`, fewer joints exceed their limits");
 }
 
 }  // namespace
@@ -144,18 +144,20 @@ MotionFile read_hoap_motion(const MotionInput& source) {
     if (rate > 0) dt = 1 / rate;
     motion.notes.push_back(
         std::string("the rows of ") + (sequence.layout.radians ? "angles in radians" : "counts") +
-        " have no intervals; one row every " + text::brief(1000 * dt) + " ms" +
-        (rate > 0 ? ", as --rate says" : " is assumed (--rate HZ changes this)"));
+        " do not state their intervals. " +
+        (rate > 0 ? "As --rate says, there is one row every " : "Ayumi assumes one row every ") +
+        text::brief(1000 * dt) + " ms" + (rate > 0 ? "" : " (--rate HZ changes this)"));
   }
   motion.rate = 1 / dt;
   if (!sequence.even)
     motion.notes.push_back(
-        "the intervals change, so the rows are interpolated linearly, with one row every " +
+        "the intervals between the rows differ, so Ayumi interpolates linearly and makes one row "
+        "every " +
         std::to_string(sequence.tick_ms) + " ms");
   if (sequence.general_commands > 0)
     motion.notes.push_back(
         std::to_string(sequence.general_commands) +
-        " commands to single devices are ignored, but the time of their rows counts");
+        " commands to single devices are ignored, but the intervals of their rows are kept");
   say_largest_step(sequence, motion.notes);
   Eigen::MatrixXd theta = hoap_readings(model, sequence);
   std::vector<char> known(static_cast<size_t>(sequence.layout.motors) + 1, 0);

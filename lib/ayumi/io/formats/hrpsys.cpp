@@ -27,7 +27,7 @@ std::optional<NumberRows> rows_beside(const MotionInput& source, const std::stri
   NumberRows table = number_rows(other, other.bytes, blanks());
   if (table.rows.size() != rows)
     other.refuse(0, "this file has " + std::to_string(table.rows.size()) +
-                        " rows, but the file of angles has " + std::to_string(rows));
+                        " rows, but the .pos file has " + std::to_string(rows));
   return table;
 }
 
@@ -109,9 +109,10 @@ MotionFile read_hrpsys(const MotionInput& source) {
   for (size_t k = 0; k < rows; ++k) {
     motion.times.push_back(table.rows[k][0]);
     if (k > 0 && !(motion.times[k] > motion.times[k - 1]))
-      source.refuse(table.lines[k],
-                    "time " + text::brief(motion.times[k]) + " s does not come after " +
-                        text::brief(motion.times[k - 1]) + " s; times must increase");
+      source.refuse(table.lines[k], "time " + text::brief(motion.times[k]) +
+                                        " s does not come after " +
+                                        text::brief(motion.times[k - 1]) +
+                                        " s of the row before; times must increase");
     for (size_t i = 1; i < width; ++i)
       motion.values(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i - 1)) =
           table.rows[k][i];
@@ -132,9 +133,10 @@ MotionFile read_hrpsys(const MotionInput& source) {
       if (most > kRounding) {
         for (size_t k = 0; k < rows; ++k)
           motion.base[k].attitude = Eigen::Quaterniond(rpy_to_matrix(vector_at(hip->rows[k], 1)));
-        motion.notes.push_back("the attitude of .hip differs from that of .waist by up to " +
-                               text::brief(most * 180 / EIGEN_PI) +
-                               " deg; .hip is used, as by the SequencePlayer");
+        motion.notes.push_back(
+            "the attitudes in the .hip file and in the .waist file differ by up to " +
+            text::brief(most * 180 / EIGEN_PI) +
+            " deg. Ayumi uses the .hip file, as the SequencePlayer of hrpsys does");
       }
     }
   }
@@ -142,7 +144,8 @@ MotionFile read_hrpsys(const MotionInput& source) {
     require_width(source, *zmp, ".zmp", {3});
     if (motion.base.empty()) {
       motion.notes.push_back(
-          "the ZMP is left out, because it is relative to the waist and there is no .waist file");
+          "the ZMP is left out, because the file states it relative to the waist, and there is no "
+          ".waist file");
     } else {
       double off = 0;
       for (size_t k = 0; k < rows; ++k) {
@@ -156,13 +159,16 @@ MotionFile read_hrpsys(const MotionInput& source) {
       motion.notes.push_back(
           off < kNearGround
               ? "the ZMP is relative to the waist, as the format defines it"
-              : "the ZMP, read relative to the waist, is up to " + text::brief(1000 * off) +
-                    " mm away from the ground; the file may state the ZMP in another frame");
+              : "if the ZMP is read relative to the waist, as the format defines it, the ZMP is up "
+                "to " +
+                    text::brief(1000 * off) +
+                    " mm away from the ground. The file may state the ZMP in another frame");
     }
   }
   if (const auto torque = rows_beside(source, ".torque", rows)) {
     require_width(source, *torque, ".torque", {width - 1});
-    motion.notes.push_back("the torques of .torque are left out, because a pattern has no torques");
+    motion.notes.push_back(
+        "the torques of the .torque file are left out, because a pattern has no torques");
   }
   return motion;
 }

@@ -186,8 +186,8 @@ MotionFile read_deep_mimic(const MotionInput& source) {
       motion.base.push_back(frame_root(source, rows[k], k, 0, 3, false));
     set_values(rows, 7, rows.front().size() - 7, motion);
     motion.notes.push_back(
-        "units: metres and radians, z up; quaternion order: x y z w (assumed from the layout "
-        "with a single FrameDuration, because the file does not state the order)");
+        "units: metres and radians; axis up: z; quaternion order: x y z w. The file does not state "
+        "this order, so Ayumi assumes the order of files that have a single FrameDuration");
   } else {
     const std::vector<std::vector<double>> rows = frames_of(source, root, 9);
     double now = 0;
@@ -205,8 +205,9 @@ MotionFile read_deep_mimic(const MotionInput& source) {
     }
     set_values(rows, 8, rows.front().size() - 8, motion);
     motion.notes.push_back(
-        "units: metres and radians, y up, turned to z up; quaternion order: w x y z, as the format "
-        "defines it; each joint is one number");
+        "units: metres and radians; quaternion order: w x y z, as the format defines it. In the "
+        "file "
+        "the axis y is up; Ayumi turns the motion so that z is up. Each joint has one number");
   }
   if (const auto names = root.find("Joints")) motion.joints = names->strings();
   if (!motion.joints.empty() &&

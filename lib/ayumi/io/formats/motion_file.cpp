@@ -59,13 +59,14 @@ size_t MotionInput::chosen_motion(const std::vector<std::string>& names,
   for (size_t i = names.size(); i-- > 0;)
     if (!options.motion.empty() && options.motion == names[i]) chosen = i;
   if (chosen == names.size())
-    refuse(0,
-           "there is no motion '" + options.motion + "'; the file has " + text::join(shown, ", "));
+    refuse(0, "there is no motion '" + options.motion + "'; the motions of the file are " +
+                  text::join(shown, ", "));
   motion.name = names[chosen];
   motion.chosen = true;
   if (names.size() > 1)
-    motion.notes.push_back("the motion " + shown[chosen] + " is read; the file has " +
-                           text::join(shown, ", ") + " (--motion chooses one)");
+    motion.notes.push_back("the motion " + shown[chosen] +
+                           " is read; the motions of the file are " + text::join(shown, ", ") +
+                           " (--motion chooses one)");
   return chosen;
 }
 

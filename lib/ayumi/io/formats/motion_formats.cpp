@@ -40,21 +40,24 @@ using namespace std::string_literals;
 
 const std::vector<Foreign>& foreign_files() {
   static const std::string arrays =
-      "load it in Python and save its arrays with numpy.savez (fps, root_pos, root_rot, dof_pos)";
+      "load the file in Python, and save the arrays fps, root_pos, root_rot and dof_pos with "
+      "numpy.savez";
   static const std::string retarget =
-      "retarget it to the robot first, and write the joint angles as CSV";
+      "retarget the motion to the robot first, and write the joint angles as CSV";
   static const std::vector<Foreign> files = {
       {"#ROSBAG", "a ROS 1 bag", "write its joint trajectory as YAML, or its joint states as CSV"},
       {"SQLite format 3", "an SQLite database, such as a ROS 2 bag",
        "write its joint states as CSV"},
       {"\x89MCAP", "an MCAP log", "write its joint states as CSV"},
       {"Kaydara FBX Binary", "an FBX scene",
-       "retarget it to the robot in the program that made it, and write the joint angles as CSV"},
+       "retarget the motion to the robot in the program that made the file, and write the joint "
+       "angles as CSV"},
       {"; FBX", "an FBX scene",
-       "retarget it to the robot in the program that made it, and write the joint angles as CSV"},
+       "retarget the motion to the robot in the program that made the file, and write the joint "
+       "angles as CSV"},
       {"HIERARCHY", "a BVH recording of a person",
-       "retarget it to the robot first; Ayumi writes BVH and does not read it"},
-      {"glTF", "a glTF scene", "Ayumi writes glTF and does not read it"},
+       "retarget the motion to the robot first; Ayumi writes BVH files, but does not read them"},
+      {"glTF", "a glTF scene", "Ayumi writes glTF files, but does not read them"},
       {"\x57\xE0\xE0\x57\x10\xC0\xC0\x10", "a Havok animation (.hkx)", retarget},
       {"\x1E\x0D\xB0\xCA\xCE\xFA\x11\xD0", "a Havok animation (.hkx)", retarget},
       {"BLENDER", "a scene of Blender", retarget},
@@ -176,8 +179,9 @@ bool is_htr(const MotionInput& source) {
 const Foreign* signed_kind(const MotionInput& source) {
   for (const Foreign& kind : foreign_files())
     if (source.bytes.starts_with(kind.sign)) return &kind;
-  static const Foreign c3d = {"", "a C3D recording of markers",
-                              "retarget it to the robot first, and write the joint angles as CSV"};
+  static const Foreign c3d = {
+      "", "a C3D recording of markers",
+      "retarget the motion to the robot first, and write the joint angles as CSV"};
   if (source.bytes.size() >= 512 && source.bytes[1] == 'P' &&
       static_cast<unsigned char>(source.bytes[0]) < 16)
     return &c3d;
@@ -190,11 +194,12 @@ const Foreign* signed_kind(const MotionInput& source) {
   static const Foreign stl = {"", "an STL mesh", "name the motion file"};
   if (is_text_stl(source)) return &stl;
   static const Foreign skeleton = {"", "a skeleton of ASF/AMC",
-                                   "retarget its motion to the robot first, and write the joint "
+                                   "retarget the motion to the robot first, and write the joint "
                                    "angles as CSV"};
   if (is_asf(source)) return &skeleton;
-  static const Foreign htr = {"", "an HTR recording of a person",
-                              "retarget it to the robot first, and write the joint angles as CSV"};
+  static const Foreign htr = {
+      "", "an HTR recording of a person",
+      "retarget the motion to the robot first, and write the joint angles as CSV"};
   if (is_htr(source)) return &htr;
   return nullptr;
 }
@@ -204,19 +209,19 @@ const Foreign* text_kind(const MotionInput& source) {
   static const Foreign mtnx = {"", "a motion of ROBOTIS R+ Motion (.mtnx)",
                                "write the motion as CSV, or as an action file (.bin)"};
   static const Foreign pickle = {"", "a Python pickle",
-                                 "load it in Python and save its arrays with numpy.savez (fps, "
-                                 "root_pos, root_rot, dof_pos)"};
+                                 "load the file in Python, and save the arrays fps, root_pos, "
+                                 "root_rot and dof_pos with numpy.savez"};
   const std::string extension = lower_extension(source.file);
   if (extension == ".mtnx" || extension == ".mtn") return &mtnx;
   if (source.bytes.substr(0, 2000).find("<Root type=\"Motion\"") != std::string::npos) return &mtnx;
   if (extension == ".pkl" || extension == ".pickle" || extension == ".joblib") return &pickle;
   static const Foreign archive = {
       "", "an archive without the arrays of a motion",
-      "save fps, root_pos, root_rot and dof_pos, or fps, joint_pos, body_pos_w and body_quat_w, "
-      "with numpy.savez"};
+      "save one of these two sets of arrays with numpy.savez: fps, root_pos, root_rot and dof_pos; "
+      "or fps, joint_pos, body_pos_w and body_quat_w"};
   static const Foreign workbook = {"", "an Office workbook", "save the sheet as CSV"};
   static const Foreign torch = {"", "a file of PyTorch",
-                                "load it in Python and save its arrays with numpy.savez"};
+                                "load the file in Python, and save its arrays with numpy.savez"};
   if (source.bytes.starts_with("PK")) {
     // Definition: a ZIP archive ends with a directory; its last record has this signature.
     static const Foreign cut = {"", "the beginning of an archive (.npz) that was cut off",
@@ -224,9 +229,10 @@ const Foreign* text_kind(const MotionInput& source) {
     if (source.bytes.find("PK\x05\x06") == std::string::npos) return &cut;
     if (source.bytes.find("[Content_Types].xml") != std::string::npos) return &workbook;
     // The arrays of SMPL: rotations of a person's joints and places of the root.
-    static const Foreign person = {"", "a motion of a person (SMPL, as AMASS has them)",
-                                   "retarget it to the robot first, and save fps, root_pos, "
-                                   "root_rot and dof_pos with numpy.savez"};
+    static const Foreign person = {
+        "", "a motion of a person (SMPL, as in AMASS)",
+        "retarget the motion to the robot first, and save fps, root_pos, "
+        "root_rot and dof_pos with numpy.savez"};
     if (source.bytes.find("poses.npy") != std::string::npos &&
         source.bytes.find("trans.npy") != std::string::npos)
       return &person;
@@ -240,13 +246,14 @@ const Foreign* text_kind(const MotionInput& source) {
   if (head.find("<mujoco") != std::string::npos) return &mjcf;
   static const Foreign xsens = {
       "", "a recording of Xsens (.mvnx)",
-      "retarget it to the robot first, and write the joint angles as CSV"};
+      "retarget the motion to the robot first, and write the joint angles as CSV"};
   static const Foreign collada = {"", "a COLLADA scene",
-                                  "retarget its motion to the robot first, and write the joint "
+                                  "retarget the motion to the robot first, and write the joint "
                                   "angles as CSV"};
   if (head.find("<mvnx") != std::string::npos) return &xsens;
   if (head.find("<COLLADA") != std::string::npos) return &collada;
-  static const Foreign gltf = {"", "a glTF scene", "Ayumi writes glTF and does not read it"};
+  static const Foreign gltf = {"", "a glTF scene",
+                               "Ayumi writes glTF files, but does not read them"};
   if (head.starts_with("{") && head.find("\"asset\"") != std::string::npos &&
       source.bytes.find("\"nodes\"") != std::string::npos)
     return &gltf;
@@ -350,9 +357,10 @@ Recognized recognize(const MotionInput& source) {
   if (!kind) kind = text_kind(source);
   if (kind)
     source.refuse(0, "this is " + kind->words + ", which import does not read; " + kind->advice +
-                         "; " + formats);
-  source.refuse(0, std::string("the content is ") + (binary ? "binary, and " : "") +
-                       "of no format that import knows; " + formats);
+                         " (" + formats + ")");
+  source.refuse(
+      0, std::string(binary ? "this is a binary file in a format" : "this is a file in a format") +
+             " that import does not know; " + formats);
 }
 
 std::string cannot_hold(const MotionFormat& format, const MotionFile& motion) {

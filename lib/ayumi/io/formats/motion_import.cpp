@@ -50,9 +50,11 @@ void refuse_other_encodings(const MotionInput& source) {
   if (at == std::string::npos) return;
   char byte[8];
   std::snprintf(byte, sizeof byte, "0x%02x", static_cast<unsigned char>(text[at]));
-  source.refuse(line_at(text, at),
-                "the byte " + std::string(byte) +
-                    " is not UTF-8 text (the file may be Latin-1); save the file as UTF-8");
+  source.refuse(
+      line_at(text, at),
+      "the byte " + std::string(byte) +
+          " is not UTF-8 text. The file may have another encoding, such as Latin-1 or Shift-JIS; "
+          "save the file as UTF-8");
 }
 
 // ---- checks of the size, before a reader takes memory for it
@@ -72,7 +74,8 @@ void refuse_too_many(const MotionInput& source, const std::string& text) {
   const size_t lines = static_cast<size_t>(std::count(text.begin(), text.end(), '\n'));
   if (lines > kMostRows)
     source.refuse(0, "the file has " + std::to_string(lines) + " lines, but import reads at most " +
-                         std::to_string(kMostRows) + " rows; cut the file or leave out rows");
+                         std::to_string(kMostRows) +
+                         " rows; cut the file into parts, or leave out rows");
   const bool xml = text.find_first_not_of(" \t\r\n") == text.find('<');
   size_t values = 0, lists = 0, begin = 0;
   int depth = 0;
@@ -89,7 +92,7 @@ void refuse_too_many(const MotionInput& source, const std::string& text) {
     }
     const auto refuse = [&](const std::string& what, size_t most) {
       source.refuse(line_at(text, i), "there are more than " + std::to_string(most) + " " + what +
-                                          "; cut the file or leave out rows");
+                                          "; cut the file into parts, or leave out rows");
     };
     if (lists > kMostLists)
       refuse("lists or elements, which are too many for a motion", kMostLists);
@@ -125,9 +128,9 @@ std::string remedy(const MotionFormat* format, const ImportedMotion& motion,
   if (text && !named && !counts && has_decimal_commas(bytes))
     words += "; if the commas are decimal commas, write decimal points";
   if (!format) return words;
-  words += " (the file was read as " + format->words;
+  words += ". Ayumi read the file in the format '" + format->name + "' (" + format->words + ")";
   if (!motion.reason.empty()) words += ", because " + motion.reason;
-  return words + ")";
+  return words;
 }
 
 // A text that was cut off may end within a number, and only this end can show it.
@@ -175,19 +178,21 @@ MotionFile read_file_of(const std::string& bytes, const std::string& file, const
   const MotionFormat* const format = &format_of(bytes, source, result);
   if (!format->read)
     source.refuse(0,
-                  "the file holds key poses and no rows; make a pattern of it with `ayumi import`");
+                  "this file contains key poses, not rows of joint angles; `ayumi import` makes a "
+                  "pattern from it");
   MotionFile motion = format->read(source);
   if (format->name == "hoap" && !motion.sequence.empty()) motion.sequence = bytes;
   if (static_cast<size_t>(motion.rows()) > kMostRows)
     source.refuse(0, "the file has " + std::to_string(motion.rows()) +
                          " rows, but import reads at most " + std::to_string(kMostRows) +
-                         "; cut the file or leave out rows");
+                         "; cut the file into parts, or leave out rows");
   if (!options.motion.empty() && !motion.chosen)
     motion.notes.push_back("--motion is not used, because the file has one motion");
   if (!format->binary && may_be_cut(source.bytes))
     motion.notes.push_back(
-        "the last line of the file has no line end; if the file was cut there, the last value may "
-        "be wrong");
+        "the last line of the file has no line end. If the file is truncated, the last value may "
+        "be "
+        "wrong");
   return motion;
 }
 
@@ -201,8 +206,8 @@ std::vector<std::string> column_names(const MotionFile& motion, const RobotModel
   if (!options.joints.empty()) {
     if (options.joints.size() != columns)
       fail(ErrorCode::bad_file, {file},
-           "the file has " + count + ", but --joints names " +
-               std::to_string(options.joints.size()));
+           "the file has " + count + ", but --joints has " +
+               text::counted(options.joints.size(), "name") + "; give one name for each column");
     return options.joints;
   }
   const std::vector<std::string> own = model.dof_names();
@@ -210,7 +215,7 @@ std::vector<std::string> column_names(const MotionFile& motion, const RobotModel
     if (own.size() != columns)
       fail(ErrorCode::bad_file, {file},
            "the file has " + count + ", but '" + model.name() + "' has " +
-               text::counted(own.size(), "joint") + "; --joints A,B,... names the columns");
+               text::counted(own.size(), "joint") + "; name the columns with --joints A,B,...");
     notes.push_back("the columns are the joints in the order of the robot, as --order says: " +
                     shortened(own));
     return own;
@@ -223,8 +228,8 @@ std::vector<std::string> column_names(const MotionFile& motion, const RobotModel
                         " of '" + model.name() + "' in the order of the robot (" + own.front() +
                         ", ..., " + own.back() + "), or name the columns with --joints A,B,..."
                   : ", but '" + model.name() + "' has " + text::counted(own.size(), "joint") +
-                        ", so this may be a motion of another robot; --joints A,B,... names "
-                        "the columns"));
+                        ", so this may be a motion of another robot. If it is a motion of this "
+                        "robot, name the columns with --joints A,B,..."));
   return motion.joints;
 }
 
@@ -241,10 +246,10 @@ void refuse_degrees(const MotionFile& motion, Eigen::Index column, const std::st
   if (most > kNoAngle)
     fail(ErrorCode::bad_file, {file},
          "column '" + name + "' reaches " + text::brief(most) +
-             " rad, but no joint can turn so far; " +
+             " rad, but no joint with limits can turn so far; " +
              (motion.unit != MotionFile::Unit::of_format
                   ? "give --unit deg if the angles are in degrees"
-                  : "this format holds radians, so correct the file"));
+                  : "the angles of this format are in radians, so correct the file"));
 }
 
 /// Largest distance of a motion from the origin of its world [m], and largest ground force as a
@@ -314,9 +319,10 @@ std::vector<int> map_joints(const MotionFile& motion, const RobotModel& model,
                               : "of its " + text::counted(names.size(), "joint") + " only " +
                                     shortened(matched) + " are joints of " + robot + ", and " +
                                     shortened(unknown) + " are not") +
-             "; the joints of " + robot + " are " + shortened(model.dof_names()) +
-             "; \"aliases\" in the sidecar give the joints other names, and --joints A,B,... names "
-             "the columns");
+             ". The joints of " + robot + " are " + shortened(model.dof_names()) +
+             ". If this is a motion of " + robot +
+             ", add the names of the file to \"aliases\" in the sidecar, or name the columns with "
+             "--joints A,B,...");
   for (int dof = 0; dof < model.dof_count(); ++dof)
     if (columns[static_cast<size_t>(dof)] < 0)
       missing.push_back(model.dofs()[static_cast<size_t>(dof)].name);
@@ -324,11 +330,13 @@ std::vector<int> map_joints(const MotionFile& motion, const RobotModel& model,
     notes.push_back("unknown joints are left out: " + shortened(unknown) +
                     (unknown.size() == 1 ? text::suggestion(unknown[0], missing) : ""));
   if (!extra.empty())
-    notes.push_back("joints that do not move independently on this robot are left out: " +
-                    shortened(extra));
+    notes.push_back(
+        "these joints are left out, because they do not move independently on this robot: " +
+        shortened(extra));
   if (!missing.empty())
-    notes.push_back("joints that are missing in the file keep the angles of the home posture: " +
-                    shortened(missing));
+    notes.push_back(
+        "these joints are missing in the file and keep the angles of the home posture: " +
+        shortened(missing));
   return columns;
 }
 
@@ -462,8 +470,8 @@ constexpr double kShortestStep = 1 / ImportOptions::kRate.most, kLongestKeyStep 
 [[noreturn]] void refuse_step(const std::string& what, double longest, const std::string& remedy,
                               const std::string& file) {
   fail(ErrorCode::bad_file, {file},
-       what + ", but the rows of a motion are " + text::brief(1000 * kShortestStep) + " ms to " +
-           text::brief(longest) + " s apart; " + remedy);
+       what + ", but the time between two rows must be from " + text::brief(1000 * kShortestStep) +
+           " ms to " + text::brief(longest) + " s; " + remedy);
 }
 
 void require_rate(double rate, const std::string& file) {
@@ -489,7 +497,7 @@ void require_steps(const std::vector<double>& times, double usual, double longes
               " s after the row before",
           longest,
           std::string("correct the times, or cut the file where rows are missing") +
-              (format == "csv" ? "; if the times are in milliseconds, name their column t[ms]"
+              (format == "csv" ? ". If the times are in milliseconds, name their column t[ms]"
                                : ""),
           file);
 }
@@ -508,16 +516,16 @@ std::vector<double> times_of(const MotionFile& motion, const ImportOptions& opti
     const double rate = motion.rate > 0 ? motion.rate : options.rate;
     if (!(rate > 0))
       fail(ErrorCode::bad_file, {file},
-           "this format does not state how many rows a second has; give --rate HZ (LAFAN1 "
-           "for Unitree G1 has 30 rows per second). If the rate is twice the true rate, all "
-           "speeds are twice and all accelerations four times the true ones");
+           "this format does not state the number of rows per second. Give --rate HZ, for example "
+           "30 for the LAFAN1 motions of the Unitree G1. If you give twice the true rate, all "
+           "speeds become twice as large, and all accelerations four times as large, as they are");
     for (size_t k = 0; k < rows; ++k) times.push_back(static_cast<double>(k) / rate);
     return times;
   }
   if (options.rate > 0)
     notes.push_back("--rate is not used, because the file states the times of its rows");
   if (times[0] != 0)
-    notes.push_back("the pattern begins at the first row, which the file has at " +
+    notes.push_back("the pattern begins at the first row. The file gives this row the time " +
                     text::brief(times[0]) + " s");
   for (size_t k = 1; k < rows; ++k)
     if (!(times[k] > times[k - 1]))
@@ -544,21 +552,25 @@ Rows even_rows(const MotionFile& motion, const Rows& rows, const ImportOptions& 
   if (last > static_cast<double>(kMostRows))
     fail(
         ErrorCode::bad_file, {file},
-        "the motion lasts " + text::brief(times.back()) + " s and needs one row every " +
-            text::brief(1000 * dt) + " ms, but import reads at most " + std::to_string(kMostRows) +
-            " rows; cut the file" +
+        "the motion lasts " + text::brief(times.back()) + " s. With one row every " +
+            text::brief(1000 * dt) + " ms it has more than " + std::to_string(kMostRows) +
+            " rows, which is the limit of import; cut the file into parts" +
             (format == "csv" ? ". If the times are in milliseconds, name their column t[ms]" : ""));
   const Eigen::Index count =
       spacing.even && !keys ? rows.rows() : static_cast<Eigen::Index>(std::floor(last + 1e-3)) + 1;
   if (keys)
     notes.push_back(text::counted(rows.rows(), "key posture") +
-                    "; between these, the angles follow monotone cubics, with one row every " +
+                    ". Between these postures, Ayumi interpolates the angles with monotone cubic "
+                    "curves and makes one row every " +
                     text::brief(1000 * dt) + " ms");
   else if (!spacing.even)
     notes.push_back(
-        "the rows are not evenly spaced, so they are interpolated linearly, with one row every " +
+        "the rows are not evenly spaced in time, so Ayumi interpolates linearly and makes one row "
+        "every " +
         text::brief(dt) + " s");
-  if (unset && !keys) notes.push_back("values that are not set in a row are interpolated linearly");
+  if (unset && !keys)
+    notes.push_back(
+        "some rows do not have all values; the missing values are interpolated linearly");
   if (spacing.even && !keys && !unset) return rows;
   std::vector<double> on_ticks = times;
   if (spacing.even && !keys)
@@ -614,7 +626,8 @@ void take_out_lead(const RobotModel& model, ImportedMotion& imported) {
   imported.motion.theta = postures_of(model, model.limits(), table).theta;
   imported.commands = false;
   imported.filled.push_back(
-      "angles are servo targets: the velocity lead, delay + kd/kp, was subtracted");
+      "the angles are servo targets, which are ahead of the joint angles by the lag of the servos "
+      "(delay + kd/kp). Ayumi removed this lag to get the joint angles");
 }
 
 // Whether the values are angles of the encoders of this robot unit. If the user does not state it,
@@ -638,7 +651,7 @@ void hold_last_row(Eigen::Index least, ImportedMotion& imported) {
   theta.conservativeResize(least, Eigen::NoChange);
   theta.bottomRows(least - rows) = theta.row(rows - 1).replicate(least - rows, 1);
   imported.filled.push_back("the last posture is held until there are " + std::to_string(least) +
-                            " rows, the least number for a check");
+                            " rows, because a check needs this number of rows");
 }
 
 // A motion begins and ends at rest. So its rows are continued beyond both ends as if it returned
@@ -683,12 +696,13 @@ void say_rough_angles(const RobotModel& model, ImportedMotion& imported) {
   }
   if (worst < kSaid) return;
   imported.filled.push_back(
-      "the angles are rough, as if they were rounded or measured with noise: " +
-      model.dof_names()[static_cast<size_t>(joint)] + " has an acceleration of " +
+      "the angles are rough, as if they were rounded or measured with noise. From row to row, the "
+      "acceleration of " +
+      model.dof_names()[static_cast<size_t>(joint)] + " changes with a root mean square of " +
       text::brief(worst, 2) +
       (model.dofs()[static_cast<size_t>(joint)].prismatic ? " m/s2" : " rad/s2") +
-      " (root mean square), and the forces are computed from the accelerations. --smooth DEG "
-      "smooths the angles and changes each by at most DEG degrees (try 0.1)");
+      ". Ayumi computes the forces from the accelerations, so the forces are rough too. --smooth "
+      "DEG smooths the angles and changes each angle by at most DEG degrees (try 0.1)");
 }
 
 // Noise of the root moves the whole robot, so it moves the ZMP at once.
@@ -707,11 +721,11 @@ void say_rough_root(ImportedMotion& imported) {
   }
   if (worst < kSaid) return;
   imported.filled.push_back(
-      "the track of the root is rough, as if it was rounded or measured with noise: it has an "
-      "acceleration of " +
+      "the track of the root is rough, as if it was rounded or measured with noise. The root mean "
+      "square of its acceleration is " +
       text::brief(worst, 2) +
-      " m/s2 (root mean square), which moves the ZMP. --smooth does not smooth the root; smooth "
-      "its track in the program that recorded it");
+      " m/s2, which moves the ZMP. --smooth does not smooth the root, so smooth the track in the "
+      "program that recorded it");
 }
 
 // Counts are rounded, and they are interpolated linearly between the times for which they were
@@ -744,7 +758,8 @@ void smooth_angles(const RobotModel& model, const ImportOptions& options,
                        .cwiseMax(std::min(dof.lower + margin, raw.minCoeff()))
                        .cwiseMin(std::max(dof.upper - margin, raw.maxCoeff()));
   }
-  imported.filled.push_back("angles smoothed by at most " + text::brief(degrees) + " deg");
+  imported.filled.push_back("the angles were smoothed, and each changed by at most " +
+                            text::brief(degrees) + " deg");
 }
 
 // Joints that leave their position limits, or are faster than their servos, and would do neither if
@@ -773,7 +788,8 @@ std::string hint_of_degrees(const RobotModel& model, const RawMotion& motion,
   const bool one = suspicious.size() == 1;
   return ". In radians, " + text::counted(suspicious.size(), "joint") + " (" +
          text::join_first(suspicious, kNamed) + ") " + (one ? "exceeds" : "exceed") +
-         " position or speed limits; in degrees, " + (one ? "it does not" : "none of them does") +
+         " position or speed limits. In degrees, " +
+         (one ? "this joint stays inside its limits" : "these joints stay inside their limits") +
          ". If the angles are in degrees, give --unit deg";
 }
 

@@ -147,12 +147,12 @@ MotionFile read_tracking_npz(const MotionInput& source) {
   if (!motion.joints.empty() && motion.joints.size() != joints.shape[1])
     refuse_names(source, motion.joints.size(), joints.shape[1]);
   motion.notes = {
-      "units: metres and radians; quaternion order: w x y z, as the format defines it; the first "
-      "body is read as the root"};
+      "units: metres and radians; quaternion order: w x y z, as the format defines it. Ayumi takes "
+      "the first body as the root"};
   if (motion.joints.empty())
     motion.notes.push_back(
-        "the file does not name its joints; Isaac Lab orders them breadth first, which need not be "
-        "the order of the robot");
+        "the file does not name its joints. Isaac Lab orders joints breadth first, and this may "
+        "differ from the order of the robot");
   return motion;
 }
 

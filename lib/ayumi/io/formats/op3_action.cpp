@@ -111,9 +111,10 @@ MotionFile read_op3_action(const MotionInput& source) {
   for (const size_t page : starts) names.push_back(page_name(bytes, page));
   MotionFile motion;
   if (!damaged.empty())
-    motion.notes.push_back(
-        text::counted(damaged.size(), "damaged page") +
-        " (wrong checksum, or more than 7 steps): " + text::join_first(damaged, kNamedPages));
+    motion.notes.push_back(text::counted(damaged.size(), "damaged page") +
+                           (damaged.size() == 1 ? " is" : " are") +
+                           " left out (wrong checksum, or more than 7 steps): " +
+                           text::join_first(damaged, kNamedPages));
   const size_t start = starts[source.chosen_motion(names, starts, motion)];
   std::vector<std::array<int, kServos>> rows;
   std::array<bool, kServos> used = {};
@@ -124,14 +125,15 @@ MotionFile read_op3_action(const MotionInput& source) {
     const size_t begin = page * kPageBytes, count = byte_at(bytes, begin + kStepCount);
     if (played[page] || count == 0) break;
     if (!is_sound(bytes, page))
-      source.refuse(0,
-                    "page " + std::to_string(page) +
-                        " of the file, to which the motion leads, is damaged (wrong checksum, or "
-                        "more than 7 steps); save this page again in the action editor, or "
-                        "choose another motion with --motion");
+      source.refuse(
+          0, "page " + std::to_string(page) +
+                 " belongs to the motion, but it is damaged (wrong checksum, or more than 7 "
+                 "steps). Save this page again in the action editor, or choose another motion "
+                 "with --motion");
     played[page] = true;
     if (const size_t times = byte_at(bytes, begin + kRepeat); times > 1)
-      motion.notes.push_back("page " + std::to_string(page) + " is read once; the robot plays it " +
+      motion.notes.push_back("page " + std::to_string(page) +
+                             " is read once, although the robot plays this page " +
                              std::to_string(times) + " times");
     ++pages;
     const auto speed = static_cast<double>(std::max<size_t>(byte_at(bytes, begin + kSpeed), 1));
@@ -186,8 +188,12 @@ MotionFile read_op3_action(const MotionInput& source) {
   }
   motion.keys = true;
   motion.sequence = bytes;
-  motion.notes.push_back("positions: 4096 counts a turn, 2048 at 0 rad; times in units of 8 ms");
-  motion.notes.push_back(text::counted(pages, "page") + " from page " + std::to_string(start));
+  motion.notes.push_back(
+      "units: a turn of a servo has 4096 counts, the count 2048 is 0 rad, and times are in units "
+      "of "
+      "8 ms");
+  motion.notes.push_back("the motion has " + text::counted(pages, "page") +
+                         ", beginning with page " + std::to_string(start));
   return motion;
 }
 
@@ -197,9 +203,10 @@ std::vector<WrittenFile> write_op3_action(const RobotModel& model, const MotionF
   const auto rows = static_cast<size_t>(motion.rows());
   if (time < 1 || time > 255 || std::abs(units - static_cast<double>(time)) > 1e-6)
     fail(ErrorCode::bad_file,
-         "an action file has steps of 8 ms to 2.04 s in units of 8 ms, but the "
-         "rows are " +
-             text::brief(1000 / motion.rate) + " ms apart; choose --interval 8, 16, 40 or 80");
+         "the time between two steps of an action file is a multiple of 8 ms, at most 2.04 s, but "
+         "the rows are " +
+             text::brief(1000 / motion.rate) +
+             " ms apart; choose another time between rows, for example --interval 8, 16, 40 or 80");
   if (rows > (kPages - 1) * kSteps)
     fail(ErrorCode::bad_file,
          "the motion has " + std::to_string(rows) + " rows, but an action file has at most " +

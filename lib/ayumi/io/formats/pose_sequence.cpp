@@ -495,28 +495,30 @@ class PoseSequenceReader {
 
   void say() {
     notes_.push_back("units: seconds, metres and radians, as the format defines them");
-    notes_.push_back(text::counted(keys_.size(), "key pose") + ", " +
+    notes_.push_back("the file has " + text::counted(keys_.size(), "key pose") + " and " +
                      text::counted(zmp_keys(), "ZMP key") + " (" + std::to_string(still_) +
-                     " of them stationary); every value follows a minimum-jerk curve between its "
-                     "keys, and is at rest at each key");
+                     " of these are marked as stationary). Between two keys, every value "
+                     "follows a minimum-jerk curve that is at rest at both keys");
     if (places_feet())
       notes_.push_back(
-          "the file places the feet, so the " + text::counted(legs_, "leg joint") +
-          " follow from the feet, the trunk and the " +
+          "the file states the places of the feet, so Ayumi computes the " +
+          text::counted(legs_, "leg joint") + " from the feet, the trunk and the " +
           (zmp_leads_ ? "ZMP"
            : zmp_follows_
                ? "ZMP. The file does not state the ZMP of its steps, so Ayumi puts the ZMP under "
                  "the middle of the standing foot, and the base link sways accordingly"
-               : "COG; the COG follows from the places of the base link") +
-          (zmp_keys() == 1 && !zmp_follows_ ? "; the single ZMP key is left out" : ""));
+               : "COG. The COG is computed from the places of the base link") +
+          (zmp_keys() == 1 && !zmp_follows_ ? ". The single ZMP key is left out" : ""));
     else
       notes_.push_back(
-          "the file does not place both feet, so the leg joints have the angles of the file, and "
-          "both feet are on the ground" +
-          std::string(zmp_keys() > 0 ? "; its ZMP is left out" : ""));
+          "the file does not state the places of both feet, so the leg joints get the angles of "
+          "the "
+          "file, and both feet are on the ground" +
+          std::string(zmp_keys() > 0 ? ". The ZMP of the file is left out" : ""));
     if (out_of_reach_ > 0)
-      notes_.push_back("places of the base link that the legs do not reach are left out: " +
-                       std::to_string(out_of_reach_));
+      notes_.push_back(text::counted(out_of_reach_, "place") +
+                       (out_of_reach_ == 1 ? " of the base link is" : " of the base link are") +
+                       " left out, because the legs do not reach so far");
     if (!left_out_.empty())
       notes_.push_back("the places of these links are left out: " +
                        text::join({left_out_.begin(), left_out_.end()}, ", "));

@@ -97,7 +97,7 @@ std::vector<SignTest> sign_tests(const RobotModel& model, const Eigen::VectorXd&
   const std::string overlap = overlapping(model, collisions, start);
   if (!overlap.empty())
     fail(ErrorCode::bad_model, "robot '" + model.name() + "': " + overlap +
-                                   " overlap in the start posture. Name another one with "
+                                   " overlap in the start posture. Name another start posture with "
                                    "--posture");
   const auto rows = static_cast<size_t>(std::lround((2 * kRest + 2 * kMove + kHold) / dt)) + 1;
   for (int j = 0; j < model.dof_count(); ++j) {

@@ -39,15 +39,18 @@ std::vector<std::string> joints_beside(const MotionInput& source, size_t width,
   try {
     std::vector<std::string> joints = parse_ztk(*bytes, file).joint_order;
     if (width == joints.size() || width == joints.size() + kRootValues) {
-      notes.push_back("the names of the joints are those of " + file.filename().string() +
-                      " beside the motion");
+      notes.push_back("the names of the joints come from the robot file " +
+                      file.filename().string() + " in the folder of the motion");
       return joints;
     }
-    notes.push_back(file.filename().string() + " beside the motion is not used: it has " +
+    notes.push_back("the robot file " + file.filename().string() +
+                    " in the folder of the motion is not used, because it has " +
                     text::counted(joints.size(), "joint") + ", but a row has " +
                     text::counted(width, "value"));
   } catch (const Error& error) {
-    notes.push_back("the robot beside the motion is not used: " + std::string(error.what()));
+    notes.push_back(
+        "the robot file in the folder of the motion is not used, because of an error: " +
+        std::string(error.what()));
   }
   return {};
 }
@@ -94,13 +97,16 @@ MotionFile read_zvs(const MotionInput& source) {
     const double count =
         source.number(tokens[1].substr(0, tokens[1].find('/')), line, "number of values");
     if (count != static_cast<double>(tokens.size() - 2))
-      source.refuse(line, "the brackets hold " + text::counted(tokens.size() - 2, "value") +
-                              ", but n is " + text::brief(count));
+      source.refuse(line, "the row has " + text::counted(tokens.size() - 2, "value") +
+                              " between the brackets, but its number of values, n, is " +
+                              text::brief(count));
     if (width > 0 && tokens.size() - 2 != width)
       source.refuse(line, "the row has " + text::counted(tokens.size() - 2, "value") +
                               ", but the first row has " + std::to_string(width));
     width = tokens.size() - 2;
-    if (!(dt > 0)) source.refuse(line, "dt " + text::brief(dt) + " s is not above 0");
+    if (!(dt > 0))
+      source.refuse(line,
+                    "dt " + text::brief(dt) + " s is not possible; the step must be above 0 s");
     motion.times.push_back(now);
     now += dt;
     for (size_t i = 2; i < tokens.size(); ++i)

@@ -155,8 +155,10 @@ Json parse_json(const std::string& bytes, const std::string& file, ErrorCode cod
     const size_t offset = error.byte > 0 ? error.byte - 1 : 0;
     const std::string reason = reason_of(error.what());
     if (reason.find("UTF-8") != std::string::npos)
-      fail_in_text(code, file, bytes, offset,
-                   "the text is not UTF-8 here (the file may be Latin-1); save the file as UTF-8");
+      fail_in_text(
+          code, file, bytes, offset,
+          "the text is not UTF-8 here. The file may have another encoding, such as Latin-1 "
+          "or Shift-JIS; save the file as UTF-8");
     if (const auto slip = find_json_slip(bytes))
       fail_in_text(code, file, bytes, slip->at, slip->words, slip->in_number);
     fail_in_text(code, file, bytes, offset, reason);
@@ -176,9 +178,10 @@ Json parse_json(const std::string& bytes, const std::string& file, ErrorCode cod
                  "arrays and objects are nested more than " + std::to_string(kDeepestNesting) +
                      " levels deep; correct the brackets");
   if (builder.has_zero())
-    fail_in_text(code, file, bytes, place_of_zero(bytes),
-                 "a text has the character U+0000, which would end a file name or a message; "
-                 "remove it");
+    fail_in_text(
+        code, file, bytes, place_of_zero(bytes),
+        "this text has the character U+0000, which a file name or a message cannot contain; "
+        "remove this character");
   if (!builder.duplicate().empty())
     fail(code, {file},
          "the key '" + builder.duplicate() + "' appears twice in one object; keep one");

@@ -275,14 +275,14 @@ class SlipFinder {
     if (token_ != Token::close) return false;
     if (at_top()) {
       say(at_, std::string("this ") + text_[at_] +
-                   " closes nothing, because no bracket is open; remove it");
+                   " closes nothing, because no bracket is open; remove this bracket");
       return true;
     }
     if (text_[at_] != closing(inside().bracket)) {
       const char wanted = closing(inside().bracket);
-      say(at_, bracket_words(inside()) + " is not closed before this " + text_[at_] + ": a " +
-                   wanted + " is missing, or this " + text_[at_] +
-                   " must be removed or replaced by a " + wanted);
+      say(at_, bracket_words(inside()) + " is not closed before this " + text_[at_] + ". Write a " +
+                   wanted + " before this " + text_[at_] + ", or remove this " + text_[at_] +
+                   ", or replace this " + text_[at_] + " by a " + wanted);
       return true;
     }
     if (!doubtful_ && stands_left_of(inside().at)) doubtful_ = inside().at;
@@ -312,8 +312,8 @@ class SlipFinder {
                  std::string("this comma is followed by a ") + text_[at_] + "; remove the comma");
     }
     if (token_ == Token::comma)
-      return say(at_, after_comma ? "two commas stand in a row; remove one"
-                                  : "there is nothing before this comma; remove it");
+      return say(at_, after_comma ? "there are two commas in a row; remove one"
+                                  : "there is nothing before this comma; remove the comma");
     if (inside().bracket == '[') return take_value();
     if (token_ == Token::string) {
       name_at_ = at_;
@@ -387,7 +387,7 @@ class SlipFinder {
         closes();
         return;
       case Token::colon:
-        return say(at_, "two colons stand in a row; remove one");
+        return say(at_, "there are two colons in a row; remove one");
       default:
         return say_other();
     }
@@ -411,9 +411,11 @@ class SlipFinder {
     size_t unit = 0;
     while (unit < number.size() && !is_word_char(number[unit])) ++unit;
     if (unit > 0 && unit < number.size() && is_json_number(number.substr(0, unit)))
-      return say(at_, "'" + number + "' is not a number: write " + number.substr(0, unit) +
-                          " without " + number.substr(unit) +
-                          " (the file states its units, and an expression needs quotation marks)");
+      return say(at_,
+                 "'" + number + "' is not a number: write " + number.substr(0, unit) + " without " +
+                     number.substr(unit) +
+                     ". Numbers are written without a unit, because the file states its units; an "
+                     "expression needs quotation marks");
     if (number.size() > 1 && number.front() == '0' && is_decimal(number[1])) {
       if (at_ > 1 && text_[at_ - 1] == ',' && is_decimal(text_[at_ - 2]))
         return say(at_ - 1, "a number has a decimal point, not a comma", true);
@@ -443,11 +445,13 @@ class SlipFinder {
     }
     if (at_top()) {
       if (token_ == Token::close)
-        return say(at_, std::string("this ") + text_[at_] +
-                            " closes nothing, because all brackets are closed; remove it");
-      return say(at_,
-                 "the text continues after its last bracket is closed; remove one closing bracket "
-                 "before this place, or remove what follows");
+        return say(at_,
+                   std::string("this ") + text_[at_] +
+                       " closes nothing, because all brackets are closed; remove this bracket");
+      return say(
+          at_,
+          "the text continues after its last bracket is closed. If a closing bracket before "
+          "this place is wrong, remove that bracket; otherwise remove the text from here on");
     }
     if (token_ == Token::close) {
       closes();
@@ -456,7 +460,7 @@ class SlipFinder {
     if (token_ == Token::colon && inside().bracket == '[')
       return say(at_, "a name with a value must be in { }, but the innermost open bracket is " +
                           bracket_words(inside()) +
-                          ": a ] is missing before the name, or a { is missing");
+                          ". A ] is missing before the name, or a { is missing before the name");
     if (token_ == Token::colon) return say(at_, "a comma is meant here, not a colon");
     if (token_ == Token::other && text_[at_] == ';')
       return say(at_, "a comma is meant here, not a semicolon");
@@ -496,14 +500,15 @@ class SlipFinder {
     if (at_top()) {
       if (inside().expects == Expects::value)
         say(at_,
-            "the text ends before its first value; it must hold an object, as in { \"t\": 0.5 }");
+            "the text ends before its first value; a file must contain an object, as in { \"t\": "
+            "0.5 }");
       return;
     }
     if (doubtful_ && open_.size() == 2)
       return say(*doubtful_,
                  std::string("the text ends too early: a ") + closing(inside().bracket) +
-                     " is missing, probably for the " + text_[*doubtful_] +
-                     " of this line, because the bracket that closes it is farther to the left");
+                     " is missing. It probably belongs to the " + text_[*doubtful_] +
+                     " of this line, because the next closing bracket is farther to the left");
     std::string words;
     for (size_t i = open_.size() - 1; i > 0; --i)
       words += (words.empty() ? "" : ", then ") + std::string(1, closing(open_[i].bracket)) +

@@ -132,7 +132,7 @@ Found require_value(const JsonTree& root, const std::string& pointer) {
   const Found found = follow(root, pointer);
   if (!found.exact)
     fail(ErrorCode::usage,
-         "the pattern has no value " + pointer + "; the pattern may have changed");
+         "the pattern has no value at " + pointer + "; the pattern may have changed");
   return found;
 }
 

@@ -157,7 +157,8 @@ std::string repeated(const std::string& text, const PatternEdit& edit) {
                        ? find_value(text, place.around + "/" + std::to_string(first + items - 1))
                        : std::nullopt;
   if (!begin || !end)
-    fail(ErrorCode::usage, "'" + edit.pointer + "' and the items after it are not there");
+    fail(ErrorCode::usage, "the list does not have " + std::to_string(items) + " items from '" +
+                               edit.pointer + "' on");
   const size_t line = text.rfind('\n', begin->begin) + 1;  // 0 if there is no line before
   const size_t word = text.find_first_not_of(" \t", line);
   const bool own_line = word == begin->begin;

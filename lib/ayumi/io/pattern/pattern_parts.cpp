@@ -37,9 +37,10 @@ double read_moment(const JsonNode& node, const char* absolute, const char* relat
   if (node.has(absolute)) return read_time(node.at(absolute), scope);
   const double time = before + read_time(node.at(relative), scope);
   if (time > kLongestPattern)
-    node.at(relative).complain("this time is " + text::exact(time) +
-                               " s from the beginning; the longest pattern is " +
-                               text::exact(kLongestPattern) + " s");
+    node.at(relative).complain(
+        "this time is " + text::exact(time) +
+        " s after the beginning of the motion, but a pattern lasts at most " +
+        text::exact(kLongestPattern) + " s");
   return std::round(kTimeSteps * time) / kTimeSteps;
 }
 
@@ -68,8 +69,8 @@ Swing read_swing(const JsonNode& node, Support support, PatternScope& scope) {
                "and right were exchanged"));
   if (node.has("step") == node.has("to"))
     node.complain(node.has("to")
-                      ? "\"to\" and \"step\" both say where the foot lands; keep one of them"
-                      : "the place where the foot lands is missing; give the foothold as \"to\", "
+                      ? "\"to\" and \"step\" both say where the foot lands; keep one of these keys"
+                      : "the place where the foot lands is missing. Give the foothold as \"to\", "
                         "or a step relative to the other foot as \"step\"");
   if (const auto step = node.find("step"))
     swing.step = read_step(*step, scope);
@@ -226,9 +227,10 @@ ControllerSpec read_controller(const JsonNode& node, PatternScope& scope) {
   const auto gains = node.find("gains");
   if (!gains) return controller;
   if (gains->has("q") && (gains->has("k") || gains->has("d")))
-    gains->complain("q determines k and d; give either q, or k and d");
+    gains->complain(
+        "q is given together with k or d, but q determines k and d; give only q, or only k and d");
   if (gains->has("k") != gains->has("d"))
-    gains->complain("k needs d, and d needs k; give both, or give q");
+    gains->complain("only one of the gains k and d is given; give both of them, or give q");
   for (const auto& [name, value] : gains->members())
     controller.gains.emplace_back(name, read_number(value, scope));
   return controller;
@@ -276,8 +278,8 @@ CorrectionTrack read_correction(const JsonNode& node) {
             "expected [begin, end, spacing] in seconds, with begin below end and a "
             "spacing above 0");
       if (!track.smooth.empty() && values[0] < track.smooth.back().end)
-        window.complain("the window begins at " + text::exact(values[0]) +
-                        " s, before the end of the window that precedes it (" +
+        window.complain("this window begins at " + text::exact(values[0]) +
+                        " s, but the window before it ends later (at " +
                         text::exact(track.smooth.back().end) +
                         " s); give the windows in order and without overlap");
       track.smooth.push_back({values[0], values[1], values[2]});

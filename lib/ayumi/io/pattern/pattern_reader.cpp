@@ -63,7 +63,8 @@ void read_postures(const JsonNode& root, PatternScope& scope, Pattern& pattern) 
   for (const auto& [name, joints] : postures->members())
     if (!pattern.postures.emplace(name, read_joint_angles(joints, scope)).second)
       joints.complain(
-          "another file that is included has a posture of this name already; rename one");
+          "another included file already has a posture of this name; rename one of the two "
+          "postures");
 }
 
 struct LibraryFile {
@@ -148,8 +149,8 @@ class Counter {
     require_parameter_name(name_, *count);
     if (scope.parameters.contains(name_))
       count->complain("'" + name_ +
-                      "' is the name of a parameter or of the count of a block around this one; "
-                      "choose another name");
+                      "' is already the name of a parameter, or the name of the count of a block "
+                      "around this block; choose another name");
   }
   ~Counter() { scope_.parameters.erase(name_); }
   Counter(const Counter&) = delete;
@@ -196,7 +197,7 @@ void each_item(const JsonNode& list, const std::string& name, PatternScope& scop
 
 [[noreturn]] void complain_of_many(const JsonNode& list) {
   list.complain("with its repeated blocks the list has more than " + std::to_string(kMostItems) +
-                " items; repeat less often");
+                " items; give a smaller \"repeat\"");
 }
 
 // If a time is later than the next one by this factor, it is probably wrong by a power of ten.
@@ -213,9 +214,9 @@ std::string meant_time(double before, double previous, const std::string& place_
   const bool gross = previous > kGrossTime * t;
   for (const double slip : number_slips(previous))
     if (slip > before && slip < t && (gross || slip > previous / kGrossTime))
-      return "; if the time of " + place_of_previous + " should be " + text::brief(slip, 10) +
+      return ". Perhaps the time of " + place_of_previous + " should be " + text::brief(slip, 10) +
              " s and not " + text::exact(previous) +
-             " s, correct that time; otherwise give a later time here";
+             " s. If so, correct the time there; otherwise give a later time here";
   for (const double slip : number_slips(t))
     if (slip > previous && slip < 2 * previous - before)
       return "; give a later time, perhaps " + text::brief(slip, 10) + " s";
@@ -227,8 +228,8 @@ std::string meant_time(double before, double previous, const std::string& place_
 std::string meant_span(const JsonNode& node, const std::string& absolute,
                        const std::string& relative, double value) {
   if (!node.has(absolute) || !(value > 0)) return "";
-  return "; if " + text::exact(value) + " s are counted from the " +
-         (relative == "duration" ? "beginning of the phase" : "keyframe before") + ", write \"" +
+  return ". If the " + text::exact(value) + " s are counted from the " +
+         (relative == "duration" ? "beginning of this phase" : "keyframe before") + ", write \"" +
          relative + "\" in place of \"" + absolute + "\"";
 }
 

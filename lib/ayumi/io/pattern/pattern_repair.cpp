@@ -64,7 +64,7 @@ RepairPreferences read_repair(const JsonNode& node, int keyframes, PatternScope&
       if (preferences.weights[joint] <= 0)
         weight.complain("a weight must be above 0, but it is " +
                         text::exact(preferences.weights[joint]) +
-                        "; to keep the joint still, lock the joint");
+                        ". If the joint must not change, lock the joint");
     }
   if (const auto trust = node.find("trust")) preferences.trust = read_trust(*trust);
   if (const auto margin = node.find("margin"))

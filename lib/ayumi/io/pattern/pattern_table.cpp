@@ -48,8 +48,8 @@ void write_pattern_and_table(const fs::path& path, const Pattern& pattern,
   const fs::path table = table_beside(path);
   if (table == path)
     fail(ErrorCode::bad_file, {path.string()},
-         "the command writes two files, the pattern and a table beside it, and the table "
-         "needs this name; give the pattern another ending, such as .json");
+         "the command writes two files, the pattern and its table, and the table gets this name. "
+         "Give the pattern a name with another ending, such as .json");
   Pattern named = pattern;
   // The path is relative to the pattern's old folder here. write_pattern() makes it relative to the
   // new one.
@@ -83,8 +83,8 @@ std::string kept_sequence(const DenseTable& table) {
   std::string bytes = read_file(table.sequence->file);
   if (sha256(bytes) != table.sequence->sha256)
     fail(ErrorCode::bad_file, table.sequence->file +
-                                  ": this is no longer the sequence that was imported; import the "
-                                  "changed sequence again");
+                                  ": this file has changed since the import; import the changed "
+                                  "sequence again");
   return bytes;
 }
 

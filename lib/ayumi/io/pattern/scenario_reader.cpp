@@ -66,8 +66,8 @@ GroundBlock read_block(const JsonNode& node, PatternScope& scope) {
     for (const char* const key : {"x", "y"})
       if (node.has(key))
         node.at(key).complain(
-            "the block has the keys of a rectangle (x, y) and of a disc (position, radius); keep "
-            "the keys of one shape");
+            "the block has keys of a rectangle (x, y) and also keys of a disc (position, radius); "
+            "keep the keys of one of these shapes");
     block.kind = GroundBlock::Kind::disc;
     block.center = read_vector2(node.at("position"), scope);
     block.radius = read_positive(node.at("radius"), scope, 100);
@@ -275,8 +275,8 @@ const DisturbanceFormat& read_format(const JsonNode& node) {
     if (key != "type" && key != "at" && key != "duration" &&
         std::find(format.keys.begin(), format.keys.end(), key) == format.keys.end())
       value.complain("a disturbance of type \"" + type +
-                     "\" does not have this key; its keys are " + text::join(format.keys, ", ") +
-                     ", besides \"at\" and \"duration\"");
+                     "\" does not have this key; its keys are \"at\", \"duration\", " +
+                     text::join(format.keys, ", "));
   return format;
 }
 

@@ -82,10 +82,10 @@ void require_setting(const JsonNode& node, const std::string& name) {
   known.insert(known.end(), kWholeNumbers.begin(), kWholeNumbers.end());
   known.insert(known.end(), kSwitches.begin(), kSwitches.end());
   if (contains(known, name)) return;
-  node.complain("there is no setting '" + name + "'; settings are " + text::join(known, ", ") +
-                ", set.NAME (a parameter of the pattern), gain.NAME and value.NAME (of worlds and "
-                "disturbances)" +
-                text::suggestion(name, known));
+  node.complain("there is no setting '" + name + "'" + text::suggestion(name, known) +
+                ". The settings are " + text::join(known, ", ") +
+                ", set.NAME (a parameter of the pattern), gain.NAME (a gain of the controller) and "
+                "value.NAME (a value in worlds and disturbances)");
 }
 
 double whole(const JsonNode& node, double least, double value) {
@@ -131,8 +131,8 @@ Part read_axis(const JsonNode& node, const std::string& name) {
     const double to = node.at("to").number_within(-kLargestNumber, kLargestWhole);
     const long count = read_count(node.at("count"), 1);
     if (count == 1 && from != to)
-      node.complain("one value cannot be both " + text::exact(from) + " and " + text::exact(to) +
-                    "; give \"count\" 2 or more");
+      node.complain("\"count\" is 1, but \"from\" is " + text::exact(from) + " and \"to\" is " +
+                    text::exact(to) + "; give a \"count\" of 2 or more");
     for (long i = 0; i < count; ++i) {
       const double share = count == 1 ? 0 : double(i) / double(count - 1);
       double value = i + 1 == count ? to : from + (to - from) * share;
@@ -167,9 +167,10 @@ Part product_of(const JsonNode& node, std::vector<Part> parts) {
     names_of(part, theirs);
     for (const std::string& name : theirs)
       if (!names.insert(name).second)
-        node.complain("the setting '" + name +
-                      "' is in two factors of the product; a setting has one value in each case, "
-                      "so remove it from one factor");
+        node.complain(
+            "the setting '" + name +
+            "' is in two factors of the product, but in each case a setting has only one value; "
+            "remove the setting from one factor");
     refuse_too_many(node, double(product.size) * double(part.size));
     product.size *= part.size;
   }
@@ -340,7 +341,9 @@ SweepStudy::SweepStudy(const std::string& text, const std::filesystem::path& pat
   document->radians_per_unit = scope.radians_per_unit;
   const auto found = root.find("sweep");
   if (!found)
-    root.complain("the key \"sweep\" is missing; it says which cases are run and what is measured");
+    root.complain(
+        "the key \"sweep\" is missing; add \"sweep\", which states the cases to run and the "
+        "values to measure");
   const JsonNode& sweep = *found;
   sweep.expect_object();
   sweep.only_keys({"settings", "cases", "worlds", "disturbances", "measure", "thresholds"});
@@ -374,7 +377,8 @@ SweepStudy::SweepStudy(const std::string& text, const std::filesystem::path& pat
     }
     if (const auto all = sweep.find(list))
       for (const auto& [name, node] : all->members())
-        if (!used.contains(name)) node.complain("no case uses '" + name + "'; remove it or use it");
+        if (!used.contains(name))
+          node.complain("no case uses '" + name + "'; remove '" + name + "', or use it in a case");
   }
   std::string bodies;
   for (const char* list : {"worlds", "disturbances"})

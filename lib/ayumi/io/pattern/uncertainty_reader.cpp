@@ -97,10 +97,10 @@ Distribution read_distribution(const JsonNode& node, bool angle, PatternScope& s
   const double away = std::max(d.low - d.mean, d.mean - d.high) / d.deviation;
   if (d.kind == Distribution::Kind::truncated && away > kFarthestRange)
     values.complain("the range is " + text::brief(away) +
-                    " standard deviations away from the mean (limit " +
+                    " standard deviations away from the mean, but at most " +
                     text::brief(kFarthestRange) +
-                    "), where the normal distribution has hardly any numbers; use \"uniform\", or "
-                    "correct the mean or the range");
+                    " are possible, because farther away the normal distribution has hardly any "
+                    "values. Use \"uniform\", or correct the mean or the range");
   return d;
 }
 
@@ -108,8 +108,8 @@ std::string read_source(const JsonNode& node) {
   const auto source = node.find("source");
   if (!source || source->string().find_first_not_of(" \t\r\n") == std::string::npos)
     node.complain(
-        "the distribution has no source of its numbers; add \"source\": a paper, a data sheet or "
-        "a measurement, or \"assumed: why\"");
+        "the source of these numbers is missing; add \"source\", which names a paper, a data sheet "
+        "or a measurement, or begins with \"assumed:\" and states the reason");
   return source->string();
 }
 

@@ -66,13 +66,14 @@ class BodyReader {
     robot_.sha256 = sha256(bytes);
     const YAML::Node links = member(root, "links", "links");
     if (!links || !links.IsSequence() || links.size() == 0)
-      complain(root, "the body has no list of links");
+      complain(root, "the body has no list of links; add the list 'links'");
     if (links.size() > kMostLinks) complain(links, too_many("links"));
     for (const YAML::Node& link : links) read_link(link);
     order_joints();
     if (const YAML::Node extra = member(root, "extra_joints", "extraJoints"); extra && extra.size())
       robot_.assumptions.push_back(
-          "extra joints, which close loops, are left out, because Ayumi does not simulate loops of "
+          "the extra joints close loops of links, so they are left out: Ayumi does not simulate "
+          "loops of "
           "links");
     if (!left_out_.empty())
       robot_.assumptions.push_back("shapes that Ayumi does not support are left out: " +
@@ -430,7 +431,8 @@ class BodyReader {
       if (ids_[i].first == ids_[i - 1].first)
         fail(ErrorCode::bad_file, {path_.string()},
              "the joints " + ids_[i - 1].second + " and " + ids_[i].second +
-                 " have the same joint_id " + text::exact(ids_[i].first) + "; give each its own");
+                 " have the same joint_id " + text::exact(ids_[i].first) +
+                 "; give each joint another joint_id");
     for (size_t i = 0; i < ids_.size(); ++i)
       if (ids_[i].first != static_cast<double>(i)) {
         robot_.assumptions.push_back(

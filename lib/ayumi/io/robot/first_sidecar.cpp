@@ -127,10 +127,11 @@ int body_above_both_legs(const RobotModel& model) {
 std::string trunk_text(const RobotModel& model) {
   const int body = body_above_both_legs(model);
   const std::string& name = model.bodies()[static_cast<size_t>(body)].name;
-  return remark("Trunk: its tilt decides whether the robot has fallen. Guess: " +
-                std::string(body == 0 ? "the root link, " : "") +
-                (model.has_soles() ? "the link that carries both legs."
-                                   : "because no legs were recognized.")) +
+  return remark(std::string(
+                    "Trunk: the tilt of this link shows whether the robot has fallen. Guess: ") +
+                (!model.has_soles() ? "this is the root link, because no legs were recognized."
+                 : body == 0        ? "this is the root link, which carries both legs."
+                                    : "this is the link that carries both legs.")) +
          "  \"trunk_link\": " + json_text(name) + ",\n";
 }
 
@@ -171,7 +172,8 @@ std::string leg_in_words(const RobotModel& model, Side side) {
   return text::join(words, ", ");
 }
 
-// A sole in words, such as "left l_foot, 98 mm long and 62 mm wide, 40 mm below the ankle".
+// A sole in words, such as "the left sole (link l_foot) is 98 mm long and 62 mm wide, and reaches
+// ...".
 std::string sole_in_words(const RobotModel& model, Side side) {
   const SoleDescription& sole = model.description().soles.at(name_of(side));
   Vector2d low = sole.polygon[0], high = low;
@@ -186,15 +188,16 @@ std::string sole_in_words(const RobotModel& model, Side side) {
       : high.x() < 0
           ? "from " + millimetres(-high.x()) + " to " + millimetres(-low.x()) + " behind the ankle"
           : millimetres(high.x()) + " ahead of the ankle and " + millimetres(-low.x()) +
-                " behind it";
-  return std::string(name_of(side)) + " " + sole.link + ", " + millimetres(high.x() - low.x()) +
-         " long and " + millimetres(high.y() - low.y()) + " wide, reaching " + reach;
+                " behind the ankle";
+  return "the " + std::string(name_of(side)) + " sole (link " + sole.link + ") is " +
+         millimetres(high.x() - low.x()) + " long and " + millimetres(high.y() - low.y()) +
+         " wide, and reaches " + reach;
 }
 
 std::string soles_text(const RobotModel& model, const RobotGuess& guess) {
   if (!model.has_soles())
     return remark(
-        "Soles: none was recognized, and without soles no motion can be made. State the link of "
+        "Soles: no sole was recognized, and without soles no motion can be made. State the link of "
         "each foot, the pose of its sole frame (under the ankle, x forward, z up) and the corners "
         "of its outline: \"soles\": {\"left\": {\"link\": ..., \"origin\": [x, y, z], \"polygon\": "
         "[[x, y], ...]}, \"right\": ...}");
@@ -203,19 +206,20 @@ std::string soles_text(const RobotModel& model, const RobotGuess& guess) {
                  guess.sole_reason) +
          remark(
              "Softness: stiffness [N/m] and damping time [s] of a whole sole on the ground. Guess: "
-             "the whole weight compresses hard rubber by 0.1 mm. Check this by loading a foot: the "
-             "softness of the soles can decide whether the robot falls when it walks.") +
+             "the whole weight compresses hard rubber by 0.1 mm. Check these values by loading a "
+             "foot. The softness of the soles can decide whether the robot falls when it walks.") +
          "  \"soles\": {\n" + sole_text(soles.at("left"), model, Side::left) + ",\n" +
          sole_text(soles.at("right"), model, Side::right) + "\n  },\n";
 }
 
 std::string home_text(const RobotModel& model, const RobotGuess& guess) {
   const Eigen::VectorXd home = model.posture();
-  std::string text = guessed("Home posture [deg]: every motion starts here.", guess.home_reason) +
-                     remark(
-                         "The comment after each joint says what a positive angle does. Check this "
-                         "on the robot, one joint at a time.") +
-                     "  \"postures_deg\": {\n    \"home\": {\n";
+  std::string text =
+      guessed("Home posture [deg]: every motion starts here.", guess.home_reason) +
+      remark(
+          "The comment after each joint says what a positive angle does. Check each comment "
+          "on the robot, one joint at a time.") +
+      "  \"postures_deg\": {\n    \"home\": {\n";
   std::string sliders;
   std::vector<int> turning;
   for (int i = 0; i < model.dof_count(); ++i) {
@@ -272,8 +276,9 @@ std::string aliases_text(const RobotModel& model) {
   const auto aliases = leg_aliases(model);
   if (aliases.empty()) return "";
   std::string text = remark(
-      "Aliases: other names of the joints in motion files. Guess: the joints of the legs are "
-      "recognized by their axes. Add the names that your motion files use.");
+      "Aliases: other names that motion files may use for the joints. Guess: the joints of the "
+      "legs "
+      "were recognized by their axes. Add the names that your motion files use.");
   text += "  \"aliases\": {\n";
   size_t left = aliases.size();
   for (const auto& [alias, joint] : aliases)
@@ -326,15 +331,16 @@ std::string profiles_text(const RobotModel& model, const RobotGuess& guess) {
     if (std::isfinite(limits.speed[i]) || std::isfinite(limits.peak_torque[i]))
       groups[{limits.speed[i], limits.peak_torque[i]}].push_back(model.dofs()[i].name);
   std::string text = remark(
-      "Motors: speed [rad/s] and peak torque [N m] at the joint, from the robot's file. This file "
-      "does not state the continuous torque, which the motor bears without a time limit: add "
-      "\"continuous_torque\" to each group.");
+      "Motors: speed [rad/s] and peak torque [N m] at the joint, from the robot's file. The "
+      "robot's file does not state the continuous torque, which a motor bears without a time "
+      "limit. "
+      "Add \"continuous_torque\" to each group.");
   for (const PlaceholderLimits& each : guess.placeholders)
     text +=
-        remark("Placeholder: the URDF states the " + each.what + " of " + each.value + " for " +
+        remark("Placeholder: the URDF states " + each.what + " of " + each.value + " for " +
                text::counted(each.joints.size(), "joint") +
                (each.joints.size() <= 3 ? " (" + text::join(each.joints, ", ") + ")" : "") +
-               ", probably because the format requires some number. " +
+               ". These limits are probably not true, because the format requires a number. " +
                (each.what == "position limits" ? "State the true limits in \"position_limits_deg\"."
                                                : "Replace these limits by those of the motor."));
   if (groups.empty()) return text;
@@ -369,9 +375,11 @@ std::string imu_link(const RobotModel& model) {
 
 std::string sensors_text(const RobotModel& model) {
   return remark(
-             "Sensors: they act in simulations with --noise. Guess: an inertial unit of the usual "
-             "kind on this link, and load cells at the corners of the soles. Check place, latency "
-             "[s] and noise (standard deviations [rad, rad/s, m/s^2, N]).") +
+             "Sensors: simulations with --noise use these values. Guess: a typical inertial unit "
+             "is on "
+             "this link, and load cells are at the corners of the soles. Check the place, the "
+             "latency "
+             "[s] and the noise (standard deviations [rad, rad/s, m/s^2, N]).") +
          "  \"sensors\": {\n    \"imu_link\": " + json_text(imu_link(model)) +
          ", \"imu_position\": [0, 0, 0],\n    \"latency\": " + text::exact(kLatency) +
          ", \"attitude_noise\": " + text::exact(kAttitudeNoise) +
@@ -392,7 +400,7 @@ std::string packages_text(const RobotSearch& search, const std::filesystem::path
   std::vector<std::string> folders;
   for (const std::filesystem::path& each : search.packages)
     folders.push_back(json_text(seen_from(folder, each)));
-  return remark("Folders with the packages of the meshes, as --package-path named them.") +
+  return remark("Folders that contain the packages of the meshes, from --package-path.") +
          "  \"package_path\": [" + text::join(folders, ", ") + "],\n";
 }
 
@@ -404,14 +412,16 @@ std::string held_text(const std::vector<std::string>& massless,
   std::string text;
   if (!massless.empty())
     text += remark(
-        "Joints that are held at 0. Guess: they do not move, because their links have no mass. "
-        "Check whether they should move; if so, give their links a mass in \"links\".");
+        "Joints that are held at 0. Guess: these joints do not move, because their links have no "
+        "mass. If a joint should move, give its link a mass in \"links\".");
   if (!play.empty())
     text += remark(
         "Joints that are held at 0: " + text::join(play, ", ") +
         ". Guess: each of these joints is passive, has a small range, and has the same axis as a "
-        "motor beside it, so it stands for the play of the gear of this motor. This play is the "
-        "\"backlash\" of the servo below. Check it by turning the joint while the motor holds.");
+        "motor beside it. So the joint represents the play of this motor's gear. This play is the "
+        "\"backlash\" of the motor's servo below. Check the play by turning the joint while the "
+        "motor "
+        "holds its position.");
   return text + "  \"locked_joints\": " + joint_list(held) + ",\n";
 }
 
@@ -484,10 +494,11 @@ std::string inertias_text(const RobotDescription& robot, const std::vector<std::
   if (changed.empty()) return "";
   std::string text = remark(
       "Inertias [kg m^2]: xx, xy, xz, yy, yz, zz about the centre of mass. The robot's file states "
-      "placeholders here: inertias of bodies larger than these links, or inertias that no body can "
-      "have. Guess: inertias of boxes with the extent of the links' shapes and the masses of the "
-      "file; a link without shapes has that of a sphere with the density of water. Check these "
-      "values, or state those of the CAD model.");
+      "placeholders for these links: no body can have these inertias, or only a body that is "
+      "larger "
+      "than the link. Guess: a link has the inertia of a box with the extent of its shapes and the "
+      "mass in the file. A link without shapes has the inertia of a sphere with the density of "
+      "water. Check these values, or state the values of the CAD model.");
   text += "  \"links\": {\n";
   for (const LinkDescription& link : robot.links) {
     if (std::find(changed.begin(), changed.end(), link.name) == changed.end()) continue;
@@ -517,37 +528,41 @@ void require_weight(const RobotModel& model, const std::string& file) {
     fail(ErrorCode::bad_file, {file},
          "the robot weighs " + text::brief(model.mass()) + " kg and its joints are at most " +
              text::brief(size) +
-             " m apart, so it is heavier than a cube of lead of this size; masses must be in kg "
-             "and lengths in m: divide the masses by 1000 if they are in grams");
+             " m apart, so the robot is heavier than a cube of lead with this edge. Masses must be "
+             "in "
+             "kg and lengths in m; if the masses are in grams, divide them by 1000");
   if (model.mass() < kHelium * size * size * size)
     fail(ErrorCode::bad_file, {file},
          "the robot weighs " + text::brief(model.mass()) + " kg and its joints are up to " +
              text::brief(size) +
-             " m apart, so it is lighter than a balloon of helium of this size; masses must be in "
-             "kg and lengths in m: divide the lengths by 1000 if they are in millimetres, or give "
-             "the true masses");
+             " m apart, so the robot is lighter than a cube of helium with this edge. Masses must "
+             "be "
+             "in kg and lengths in m; if the lengths are in millimetres, divide them by 1000, "
+             "otherwise give the true masses");
 }
 
 std::vector<std::string> to_do_list(const RobotModel& model, const RobotGuess& guess) {
   std::vector<std::string> items;
   items.push_back(
       "Check in the picture that the robot stands upright, looks along the red arrow, and has its "
-      "left leg on its left side (facing: " +
-      guess.facing + " of the URDF).");
+      "left leg on its left side. If this is not so, correct \"facing\", which is now the axis " +
+      guess.facing + " of the URDF.");
   if (!model.has_soles()) {
-    items.push_back(guess.robot.missing_meshes.empty()
-                        ? "State the soles of both feet; without them no motion can be made."
-                        : "Find the missing meshes (see below) and run `ayumi init` again, because "
-                          "without them no soles were recognized; or state the soles of both feet. "
-                          "Without soles no motion can be made.");
+    items.push_back(
+        guess.robot.missing_meshes.empty()
+            ? "State the soles of both feet, because without soles no motion can be made."
+            : "No soles were recognized, because meshes are missing. Find the missing "
+              "meshes (see below) and run `ayumi init` again, or state the soles of both "
+              "feet. Without soles no motion can be made.");
   } else {
     if (guess.soles_of_inertia)
       items.push_back(
-          "Measure the soles and state them: the feet have no shapes, so the soles are those of "
-          "boxes with the feet's inertias, and every verdict about motions depends on them.");
-    items.push_back(
-        "Compare the outline of the soles with the real feet: " + sole_in_words(model, Side::left) +
-        "; " + sole_in_words(model, Side::right) + ".");
+          "Measure the soles and state them. The feet have no shapes, so this sidecar has the "
+          "undersides of boxes with the inertias of the feet. Every verdict about a motion depends "
+          "on the soles.");
+    items.push_back("Compare the outline of the soles with the real feet. In this sidecar, " +
+                    sole_in_words(model, Side::left) + "; " + sole_in_words(model, Side::right) +
+                    ".");
     if (!guess.rounded_soles.empty()) items.push_back(guess.rounded_soles);
     if (!guess.more_feet.empty()) items.push_back(guess.more_feet);
     const InverseKinematics ik(model, model.posture());
@@ -556,25 +571,29 @@ std::vector<std::string> to_do_list(const RobotModel& model, const RobotGuess& g
         leg_in_words(model, Side::left) + ". Right: " + leg_in_words(model, Side::right) + ".");
     if (ik.lacks_joints())
       items.push_back(
-          "Expect limits of the legs: each leg has fewer than six joints of its own, so at some "
-          "places it cannot put the sole flat on the ground. The robot can stand, squat and take "
-          "small steps, and its trunk leans.");
+          "Expect a smaller range of motions. Each leg has fewer than six joints of its own, so at "
+          "some places a leg cannot put its sole flat on the ground. The robot can stand, squat "
+          "and "
+          "take small steps, and its trunk leans.");
     std::vector<std::string> held;
     for (const Side side : {Side::left, Side::right})
       for (const int dof : joints_of_leg(model, side))
         if (!ik.solves(dof)) held.push_back(model.dofs()[dof].name);
     if (!held.empty())
-      items.push_back("Expect that " + text::join(held, ", ") +
-                      " move only where postures and keys move them: six joints put a sole in its "
-                      "place, and the legs have more.");
-    items.push_back("Measure how soft the soles are (stiffness).");
+      items.push_back(
+          "Add keys or postures for these joints if they should move: " + text::join(held, ", ") +
+          ". Six joints are enough to put a sole in its place, and the legs have more. So Ayumi "
+          "does "
+          "not move these joints without keys or postures.");
+    items.push_back("Measure the stiffness of the soles.");
   }
   items.push_back(
-      "Move each joint alone by a small positive angle, and compare with the words "
-      "beside the home posture.");
+      "Move each joint alone by a small positive angle, and compare the motion with the comment "
+      "after this joint in the home posture.");
   for (const PlaceholderLimits& each : guess.placeholders)
-    items.push_back("Replace the placeholders: " + each.what + " of " + each.value + " on " +
-                    text::counted(each.joints.size(), "joint") + ".");
+    items.push_back("Replace the " + each.what + " of " + each.value + " on " +
+                    text::counted(each.joints.size(), "joint") +
+                    ", because these limits are probably placeholders.");
   std::vector<std::string> wide;
   for (const Dof& dof : model.dofs())
     if (!dof.prismatic && dof.limited && dof.upper - dof.lower > 4 * std::numbers::pi)
@@ -598,17 +617,18 @@ std::vector<std::string> to_do_list(const RobotModel& model, const RobotGuess& g
   const Eigen::Index fast = unlimited(limits.speed), strong = unlimited(limits.peak_torque);
   if (fast + strong > 0)
     items.push_back(
-        "State the limits of the motors in \"profiles\": the robot's file states " +
+        "State the limits of the motors in \"profiles\". The robot's file states " +
         (fast > 0 ? "no speed limit for " + text::counted(static_cast<size_t>(fast), "joint")
                   : std::string()) +
         (fast > 0 && strong > 0 ? ", and " : "") +
         (strong > 0 ? "no torque limit for " + text::counted(static_cast<size_t>(strong), "joint")
                     : std::string()) +
-        "; without them, check cannot say whether the motors can follow.");
+        ". Without these limits, `ayumi check` cannot say whether the motors can follow a motion.");
   items.push_back(
-      "State kp, kd and rotor inertia of the servos, or find them with `ayumi identify`.");
+      "State kp, kd and the rotor inertia of the servos. `ayumi identify` can find kp and kd in a "
+      "recording.");
   items.push_back("State the continuous torque of the motors.");
-  items.push_back("State place, latency and noise of the sensors.");
+  items.push_back("State the place, the latency and the noise of the sensors.");
   for (const ModelWarning& warning : diagnose(model))
     if (warning.subject == ModelWarning::Subject::link)
       items.push_back("Check " + warning.where + ": " + warning.message + ".");
@@ -623,8 +643,8 @@ FirstSidecar first_sidecar(const std::string& robot, const std::filesystem::path
   RobotDescription stated = load_robot_description(robot, search, {.meshes = true, .guess = false});
   if (!stated.sidecar_file.empty())
     fail(ErrorCode::usage, {robot},
-         "this robot has a sidecar already, " + stated.sidecar_file +
-             "; to begin anew, give the URDF of this robot");
+         "this robot already has the sidecar " + stated.sidecar_file +
+             "; to write a new first sidecar, name the URDF of the robot in place of the robot");
   namespace fs = std::filesystem;
   const fs::path urdf = fs::weakly_canonical(fs::absolute(stated.urdf_file));
   const std::string urdf_as_written = seen_from(folder, urdf);
@@ -642,21 +662,21 @@ FirstSidecar first_sidecar(const std::string& robot, const std::filesystem::path
   FirstSidecar result;
   result.to_do = to_do_list(model, guess);
   for (const std::string& note : read)
-    result.to_do.push_back("Check what was assumed in reading the file: " + note + ".");
+    result.to_do.push_back("Check this note about the robot's file: " + note + ".");
   if (!boxes.empty())
     result.to_do.push_back(
         "Replace the inertia of " + text::counted(boxes.size(), "link") + " (" +
         text::join({boxes.begin(), boxes.begin() + std::min<long>(3, std::ssize(boxes))}, ", ") +
         (boxes.size() > 3 ? ", ..." : "") +
-        "): the robot's file states placeholders, and this sidecar has the inertias of boxes in "
-        "their place.");
+        "). The robot's file states placeholders, so this sidecar has the inertias of boxes "
+        "instead.");
   const SidecarGains chosen = gains && model.has_soles() ? gains(model) : SidecarGains{};
   if (!chosen.to_do.empty()) result.to_do.push_back(chosen.to_do);
   for (const auto& [name, value] : chosen.dtad) guess.robot.control.dtad[name] = value;
   result.text = "{\n" +
                 remark("The first sidecar of " + model.name() +
-                       ", written by ayumi init. All values under \"Guess\" are to be checked; "
-                       "docs/formats.md explains the keys.") +
+                       ", written by ayumi init. Check all values whose comment has the word "
+                       "\"Guess\". docs/formats.md explains the keys.") +
                 "  \"format\": \"ayumi.robot/1\",\n  \"name\": " + json_text(model.name()) +
                 ",\n  \"urdf\": " + json_text(urdf_as_written) + ",\n" +
                 packages_text(search, folder) + held_text(massless, play) +

@@ -159,7 +159,7 @@ class MeshReader {
                            " that a file of this size may take. The file may be broken: export the "
                            "mesh again, or simplify it"};
         default:
-          throw ReaderLost{"the mesh reader's answer is not valid (message " +
+          throw ReaderLost{"the answer of the program that reads meshes is not valid (message " +
                            std::to_string(static_cast<std::uint32_t>(head.kind)) + ")" + kRemedy};
       }
     }
@@ -194,12 +194,14 @@ class MeshReader {
     const Exchange exchange = child_->receive(&head, sizeof head);
     if (exchange == Exchange::closed)
       fail(ErrorCode::bad_file, {program_.string()},
-           "the mesh reader ended before it was ready (" + child_->end().words() +
-               "); start it by itself to see why, or install Ayumi again");
+           "this program, which reads meshes, ended before it was ready (" + child_->end().words() +
+               "); start the program by itself to see its message, or install Ayumi again");
     need(exchange);
     if (head.kind != MeshMessage::hello || head.size != kMeshMessageVersion)
-      fail(ErrorCode::bad_file, {program_.string()},
-           "this is not the mesh reader of this version of Ayumi; install Ayumi as a whole");
+      fail(
+          ErrorCode::bad_file, {program_.string()},
+          "this program, which reads meshes, belongs to another version of Ayumi; install Ayumi as "
+          "a whole");
   }
 
   MeshMessageHead receive_head() {
@@ -210,9 +212,8 @@ class MeshReader {
 
   std::string receive_bytes(std::uint64_t size, std::uint64_t most) {
     if (size > most)
-      throw ReaderLost{"the mesh reader answers with " + std::to_string(size) +
-                       " bytes, but at most " + std::to_string(most) +
-                       " are accepted; simplify the mesh"};
+      throw ReaderLost{"the mesh takes " + std::to_string(size) + " bytes, but at most " +
+                       std::to_string(most) + " bytes are accepted; simplify the mesh"};
     std::string bytes;
     while (bytes.size() < size) {
       const size_t got = bytes.size();
@@ -226,8 +227,8 @@ class MeshReader {
     try {
       return decode_mesh(bytes);
     } catch (const Error& error) {
-      throw ReaderLost{std::string("the mesh reader's answer is not valid (") + error.what() + ")" +
-                       kRemedy};
+      throw ReaderLost{std::string("the answer of the program that reads meshes is not valid (") +
+                       error.what() + ")" + kRemedy};
     }
   }
 
@@ -245,8 +246,8 @@ class MeshReader {
           "reading this mesh takes more than " + std::to_string(reading_.cpu_time) +
               " s of processor time. The file may be broken: export the mesh again, or simplify it",
           false};
-    throw ReaderLost{"the mesh reader crashed on this file (" + ending.words() +
-                     "). The file is broken or hostile" + kRemedy};
+    throw ReaderLost{"the program that reads meshes crashed on this file (" + ending.words() +
+                     "). The file is damaged, or was made to cause a crash" + kRemedy};
   }
 
   // Sends the companion file of this name, or the message that there is none.

@@ -141,8 +141,9 @@ std::vector<std::string> MeshPlaces::notes() const {
   std::vector<std::string> notes;
   if (!renamed_.empty())
     notes.push_back(
-        "these mesh files were taken, although their names differ in upper and lower case: " +
-        text::join(renamed_, ", ") + "; correct the names in the robot's file");
+        "the names of these mesh files differ from the names in the robot's file only in upper and "
+        "lower case, so Ayumi used the files: " +
+        text::join(renamed_, ", ") + ". Correct the names in the robot's file");
   return notes;
 }
 

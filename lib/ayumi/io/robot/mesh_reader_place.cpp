@@ -77,11 +77,12 @@ fs::path find_mesh_reader() {
     if (fs::is_regular_file(place, ignored)) return place;
     searched.push_back(place.string());
   }
-  fail(ErrorCode::bad_file, "the program " + std::string(kReaderName) +
-                                ", which reads meshes, was not found; Ayumi looked for " +
-                                text::join(searched, ", ") +
-                                "; install Ayumi as a whole, or set the environment variable " +
-                                kReaderVariable + " to the path of the program");
+  fail(ErrorCode::bad_file,
+       "the program " + std::string(kReaderName) +
+           ", which reads meshes, was not found. Install Ayumi as a whole, or set "
+           "the environment variable " +
+           kReaderVariable + " to the path of the program. Ayumi looked for " +
+           text::join(searched, ", "));
 }
 
 }  // namespace ayumi

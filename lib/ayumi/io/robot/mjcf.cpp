@@ -283,7 +283,7 @@ class MjcfReader {
     if (count == 0 || m_->jnt_type[m_->body_jntadr[root]] != mjJNT_FREE)
       robot_.assumptions.push_back("the body " + body_name(root) +
                                    " has no free joint in the model. A robot that stands on its "
-                                   "feet is free to move, so Ayumi adds a free joint");
+                                   "feet moves freely, so Ayumi adds a free joint");
     return root;
   }
 
@@ -484,7 +484,7 @@ class MjcfReader {
     if (curves > 0)
       robot_.assumptions.push_back(
           text::counted(curves, "joint equality", "joint equalities") +
-          " with the square or a higher power of a joint's position are left out");
+          " that contain the square or a higher power of a joint's position are left out");
   }
 
   // Position actuators are servos; every other actuator has the limits of its force. If some joints
@@ -567,8 +567,8 @@ class MjcfReader {
     if (!pose.linear().isIdentity(1e-6))
       robot_.assumptions.push_back(
           "the site " + text_.imu_site +
-          " is rotated relative to its body; this rotation is ignored, and the axes of the "
-          "inertial unit are taken as those of the body");
+          " is rotated relative to its body. Ayumi ignores this rotation and takes the axes of the "
+          "body as the axes of the inertial unit");
   }
 
   const fs::path& path_;
@@ -598,9 +598,9 @@ RobotDescription parse_mjcf(const std::string&, const std::filesystem::path& pat
                             const std::vector<std::filesystem::path>&) {
   fail(ErrorCode::bad_file, {path.string()},
        "this is an MJCF model, which Ayumi reads through MuJoCo, but "
-       "this program was built without MuJoCo. To get MuJoCo: sudo "
-       "apt-get install libmujoco-dev, then configure and build "
-       "again; or convert the model to URDF");
+       "this program was built without MuJoCo. Install MuJoCo (sudo apt-get "
+       "install libmujoco-dev), and configure and build Ayumi again; or convert "
+       "the model to URDF");
 }
 
 }  // namespace ayumi

@@ -130,7 +130,7 @@ class Cleaner {
         if (depth >= kDeepestMjcfInclude || !included_.insert(included.lexically_normal()).second)
           complain_xml(file.string(), child,
                        "'" + std::string(name) +
-                           "' is included twice, or it includes itself; remove this include");
+                           "' is included twice, or includes itself; remove this <include>");
         std::error_code ignored;
         if (!fs::is_regular_file(included, ignored))
           complain_xml(file.string(), child,

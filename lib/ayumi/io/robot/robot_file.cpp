@@ -51,7 +51,7 @@ fs::path find_file(const std::string& name, const RobotSearch& search) {
   if (folder)
     fail(ErrorCode::bad_file, {name},
          std::string("this folder holds neither a ") + kSidecarName +
-             " nor exactly one robot in another format; name the file of the robot");
+             " nor exactly one robot file in another format; name the file of the robot");
   fail(ErrorCode::bad_file, "robot '" + name + "': no such file, folder or bundled robot" +
                                 (known.empty() ? "" : "; known: " + text::join(known, ", ")) +
                                 text::suggestion(name, known));
@@ -104,8 +104,8 @@ void note_mass_of_root(RobotDescription& robot) {
     if (is_root && link.inertia.mass > 0)
       robot.assumptions.push_back("the mass of the root link " + link.name + " (" +
                                   text::brief(link.inertia.mass) +
-                                  " kg) counts; some URDF readers ignore it and compute a smaller "
-                                  "total mass");
+                                  " kg) is part of the robot's mass. Some URDF readers ignore the "
+                                  "mass of the root link and compute a smaller total mass");
   }
 }
 
@@ -140,7 +140,8 @@ RobotDescription load_robot_description(const std::string& name_or_path, const R
   std::error_code ignored;
   if (!sidecar && fs::is_regular_file(file.parent_path() / kSidecarName, ignored))
     robot.assumptions.push_back("the " + std::string(kSidecarName) +
-                                " beside this file is not used; to use both, name the folder");
+                                " in the folder of this file is not used; to use both files, name "
+                                "the folder");
   if (!options.guess) return robot;
   if (!sidecar) {
     hold_joints_without_mass(robot);

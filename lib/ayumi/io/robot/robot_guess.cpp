@@ -391,8 +391,8 @@ void find_facing(const RobotModel& model, RobotGuess& guess) {
   const std::vector<Isometry3d> poses = body_poses(model, zero_posture(model));
   const std::vector<Foot> feet = find_feet(model, poses);
   if (feet.empty()) {
-    guess.facing_reason = {"no feet were recognized, so the robot is taken to face x",
-                           "that the robot faces x in the picture"};
+    guess.facing_reason = {"no feet were recognized, so Ayumi assumes that the robot looks along x",
+                           "in the picture that the robot looks along x"};
     return;
   }
   Vector3d across = poses[feet[0].body].translation() - poses[feet[1].body].translation();
@@ -413,19 +413,24 @@ void find_facing(const RobotModel& model, RobotGuess& guess) {
   if (named != 0) {
     guess.facing = nearest_facing(named * ahead);
     guess.facing_reason.why =
-        "the names of the legs say which is left, and the left leg is on the left of a robot that "
-        "faces this way";
+        "the names of the legs say which leg is the left leg. If the robot looks along this axis, "
+        "the "
+        "left leg is on its left side";
     if (toes == -named)
-      guess.facing_reason.why += "; but the longer end of the feet (" + ends + ") is at the back";
+      guess.facing_reason.why +=
+          ". But then the feet reach farther to the back than to the front (" + ends +
+          " from the ankles)";
   } else if (toes != 0) {
     guess.facing = nearest_facing(toes * ahead);
-    guess.facing_reason.why = "the feet reach farther this way from their ankles (" + ends + ")";
+    guess.facing_reason.why =
+        "along this axis, the feet reach farther from the ankles than in the opposite direction (" +
+        ends + ")";
   } else {
     guess.facing =
         nearest_facing(ahead.x() < 0 || (ahead.x() == 0 && ahead.y() < 0) ? -ahead : ahead);
     guess.facing_reason.why =
-        "the line between the feet is perpendicular to this axis; names and shapes of the feet do "
-        "not show which end is the front";
+        "the line between the feet is perpendicular to this axis. Names and shapes of the feet do "
+        "not show which end of the feet is the front";
   }
   guess.facing_reason.check = "that the robot looks along the red arrow in the picture";
 }
@@ -575,9 +580,8 @@ void find_soles(RobotGuess& guess) {
     const SoleDescription sole = sole_of(model, poses, feet[side], higher);
     if (sole.polygon.size() < 3 || extent(sole).prod() < kSmallestSole ||
         extent(sole).maxCoeff() > kLargestSole) {
-      robot.assumptions.push_back(
-          "the " + name + " foot " + sole.link +
-          " has no flat underside with every joint at 0, so the robot has no soles");
+      robot.assumptions.push_back("with every joint at 0, the " + name + " foot " + sole.link +
+                                  " has no flat underside, so the robot has no soles");
       return;
     }
     soles[name] = sole;
@@ -586,8 +590,8 @@ void find_soles(RobotGuess& guess) {
           "The undersides of the feet are rounded: the sole of the " + name + " foot measures " +
           size_text(extent(sole)) + ", but " + text::fixed(1000 * kYielding, 0) +
           " mm above the ground the foot measures " + size_text(higher) +
-          ". If the soles are soft, find out how much of them carries the robot, and state its "
-          "outline: a narrow sole can make walks impossible.";
+          ". If the soles are soft, find out which part of each sole carries the robot, and state "
+          "the outline of this part. If the stated sole is too narrow, walks can be impossible.";
   }
   const std::vector<std::string> more = other_links_on_the_ground(model, poses, feet);
   if (!more.empty()) {
@@ -595,30 +599,31 @@ void find_soles(RobotGuess& guess) {
         "Ayumi moves robots that walk on two feet, but other links of this robot stand on the "
         "ground as well: " +
         text::join(more, ", ") +
-        ". If the soles belong to other links, state them under \"soles\".";
+        ". If these links are the feet, state their soles under \"soles\".";
     robot.assumptions.push_back("the feet are " + soles["left"].link + " and " +
                                 soles["right"].link +
-                                ", although other links stand on the ground "
+                                ", although these links stand on the ground "
                                 "as well: " +
                                 text::join(more, ", "));
   }
   for (const auto& [side, sole] : soles)
     robot.assumptions.push_back(
-        side + " sole: link " + sole.link + ", hull of " + std::to_string(sole.polygon.size()) +
-        " corners, " + size_text(extent(sole)) +
+        "the " + side + " sole belongs to the link " + sole.link + " and measures " +
+        size_text(extent(sole)) + " (length x width). Its outline has " +
+        std::to_string(sole.polygon.size()) + " corners and is " +
         (feet[0].of_inertia
-             ? ", the underside of the box that has the foot's mass and inertia, because the foot "
+             ? "the underside of the box that has the foot's mass and inertia, because the foot "
                "has no shapes"
-             : ", around the points of the foot that are at most 1 mm above the ground"));
+             : "the hull of the points of the foot that are at most 1 mm above the ground"));
   robot.soles = soles;
   if (feet[0].of_inertia) {
     guess.soles_of_inertia = true;
     guess.sole_reason = {
-        "the feet have no shapes, so they are taken for boxes of even density "
-        "with their masses, centres of mass and inertias (those of the robot's "
-        "file, or those under \"links\" where this sidecar states them); the "
-        "undersides of these boxes are the soles",
-        "height, length and width of both soles: measure them on the robot"};
+        "the feet have no shapes, so Ayumi takes each foot as a box of even density with the mass, "
+        "the centre of mass and the inertia of this foot. These values are from \"links\" if this "
+        "sidecar states them, and otherwise from the robot's file. The undersides of the boxes are "
+        "the soles",
+        "the height, the length and the width of both soles on the robot"};
     return;
   }
   const bool collisions = std::any_of(
@@ -626,12 +631,11 @@ void find_soles(RobotGuess& guess) {
       [&](const Link& link) { return link.body == feet[0].body && !link.collisions.empty(); });
   guess.sole_reason = {"the outline is the hull of all points of the foot's " +
                            std::string(collisions ? "collision shapes" : "visual shapes") +
-                           " that are at most 1 mm above the ground; if this hull has more than " +
+                           " that are at most 1 mm above the ground. If this hull has more than " +
                            std::to_string(kMostCorners) + " corners, only " +
                            std::to_string(kMostCorners) + " of them are kept",
-                       "that this is the outline of the part of the foot that touches the ground; "
-                       "when in doubt, make "
-                       "the outline smaller"};
+                       "that this is the outline of the part of the foot that touches the ground. "
+                       "When in doubt, make the outline smaller"};
 }
 
 // ---- home posture
@@ -710,22 +714,26 @@ bool balance(RobotGuess& guess, const VectorXd& zero) {
             std::round(home.theta[i] / kOneDegree * 1e3) / 1e3 * kOneDegree;
       const int knee = ik.knee(Side::left);
       const std::string bend =
-          knee < 0 ? "" : ", knees at " + text::fixed(home.theta[knee] / kOneDegree, 0) + " deg";
-      robot.assumptions.push_back("home posture: COG over the middle of the soles, " +
-                                  text::fixed(1e3 * target.cog.z(), 0) + " mm high" + bend);
+          knee < 0
+              ? ""
+              : ", and the knees are at " + text::fixed(home.theta[knee] / kOneDegree, 0) + " deg";
+      robot.assumptions.push_back("in the home posture, the COG is " +
+                                  text::fixed(1e3 * target.cog.z(), 0) +
+                                  " mm high over the middle of the soles" + bend);
       const bool human = knee < 0 ||
                          ik.positive_bends_forward(Side::left) == (home.theta[knee] > zero[knee]) ||
                          reach < 0.99 * straight;
       guess.home_reason = {
-          "the robot was balanced: the soles are level, the legs have " +
-              text::fixed(100 * share, 1) + " % of their straight length, the COG is " +
+          "Ayumi computed a balanced posture. The soles are level, and the legs have " +
+              text::fixed(100 * share, 1) + " % of their straight length. The COG is " +
               text::fixed(1e3 * target.cog.z(), 0) +
               " mm high over the middle of the soles, and every joint is inside its limits" +
               (knee < 0 ? ""
-               : human  ? "; the knees bend forward like a human's"
-                        : "; the limits leave the knees too little room to bend forward, so they "
-                          "bend back"),
-          "that the robot stands like this, and that the arms are clear of the body"};
+               : human
+                   ? ". The knees bend forward like the knees of a human"
+                   : ". The position limits do not let the knees bend forward far enough, so the "
+                     "knees bend back"),
+          "that the robot can stand in this posture, and that the arms do not touch the body"};
       return true;
     }
   } catch (const Error& error) {
@@ -887,8 +895,9 @@ bool find_home(RobotGuess& guess) {
   }
   if (!balance(with_arms, start)) return true;
   guess = std::move(with_arms);
-  guess.home_reason.why += "; the arms come too near to the legs, so the arms are moved aside: " +
-                           text::join(names, ", ");
+  guess.home_reason.why +=
+      ". The arms would come too near to the legs, so these joints move the arms aside: " +
+      text::join(names, ", ");
   return true;
 }
 
@@ -997,21 +1006,23 @@ void find_servos(RobotGuess& guess) {
   }
   guess.servo_reason = {
       "kp is the effort limit of the joint divided by " + text::brief(kFullEffortError) +
-          " rad; for legs kp is at least " + text::brief(kLegStiffness) +
-          " times the weight times the COG height = " + text::brief(kLegStiffness * weight * z, 3) +
-          " N m/rad, so that the legs hold the robot; kd = 2 sqrt(kp I) damps the joint critically "
-          "(I: inertia that the joint moves while the robot is in the air, with the rotor), so "
-          "that kd/kp is " +
+          " rad. For legs, kp is at least " + text::brief(kLegStiffness) +
+          " times the weight times the COG height (" + text::brief(kLegStiffness * weight * z, 3) +
+          " N m/rad), so that the legs hold the robot. kd = 2 sqrt(kp I) damps the joint "
+          "critically. "
+          "I is the inertia that the joint moves while the robot is in the air, with the rotor. So "
+          "the lag of the servos, kd/kp, is from " +
           text::brief(1e3 * quickest, 2) + " to " + text::brief(1e3 * slowest, 2) +
-          " ms, which the servo targets compensate" +
+          " ms, and the servo targets compensate this lag" +
           (estimated == 0
                ? ""
-               : "; the effort limits of " + std::to_string(estimated) +
-                     " joints are missing or placeholders, and are replaced by " +
-                     text::brief(kLegEffort) + " times the weight times the COG height = " +
-                     text::brief(kLegEffort * weight * z, 3) + " N m for legs and by " +
-                     text::brief(kOtherEffort) + " times this product for other joints"),
-      "gains and rotor inertia of your servos; `ayumi identify` finds them in a recording"};
+               : ". The effort limits of " + std::to_string(estimated) +
+                     " joints are missing or placeholders. For these joints, Ayumi takes " +
+                     text::brief(kLegEffort) + " times the weight times the COG height (" +
+                     text::brief(kLegEffort * weight * z, 3) + " N m) in the legs, and " +
+                     text::brief(kOtherEffort) + " times weight times COG height elsewhere"),
+      "the gains and the rotor inertia of your servos. `ayumi identify` finds the gains in a "
+      "recording"};
   robot.assumptions.push_back("servos: " + guess.servo_reason.why);
 }
 
@@ -1052,8 +1063,8 @@ std::vector<std::string> hold_joints_without_mass(RobotDescription& robot) {
   }
   if (!held.empty())
     robot.assumptions.push_back(
-        "joints that carry no mass are held at 0: " + text::join(held, ", ") +
-        "; give their links a mass and an inertia to move them");
+        "these joints carry no mass, so Ayumi holds them at 0: " + text::join(held, ", ") +
+        ". To move a joint, give its link a mass and an inertia");
   return held;
 }
 
@@ -1087,8 +1098,9 @@ std::vector<std::string> gaps_of_the_files(const RobotDescription& robot, size_t
         text::counted(missing.size(), "mesh", "meshes") +
         (missing.size() == 1 ? " is missing and left out: " : " are missing and left out: ") +
         text::join_first(missing, most) +
-        (missing.size() > most ? ", which `ayumi inspect` lists" : "") +
-        "; add the files or correct the names; --package-path names the folder with the packages");
+        (missing.size() > most ? " (`ayumi inspect` lists all of them)" : "") +
+        ". Add the files, correct the names, or name the folder with the packages with "
+        "--package-path");
   return gaps;
 }
 
@@ -1122,9 +1134,10 @@ std::vector<std::string> hold_play_of_gears(RobotDescription& robot) {
   }
   if (!held.empty())
     robot.assumptions.push_back(
-        "passive joints with a small range and the axis of a motor beside them stand for the play "
-        "of the gear of this motor, so these joints are held at 0, and the servos of " +
-        text::join(driven, ", ") + " have this backlash");
+        "some passive joints have a small range and the axis of a motor beside them. Ayumi takes "
+        "the range of such a joint as the play of the motor's gear, and holds the joint at 0. So "
+        "the servos of these joints have a backlash: " +
+        text::join(driven, ", "));
   return held;
 }
 
@@ -1180,7 +1193,7 @@ std::string direction_in_words(const RobotModel& model, int dof) {
     for (const Side side : {Side::left, Side::right}) {
       if (ik.knee(side) != dof) continue;
       const bool bends = ik.positive_bends_forward(side);
-      return bends ? "positive bends the knee" : "positive straightens the knee";
+      return bends ? "a positive angle bends the knee" : "a positive angle straightens the knee";
     }
   }
   // The motion of the centre of mass of the part that the joint carries, in the trunk's axes. If
@@ -1205,10 +1218,11 @@ std::string direction_in_words(const RobotModel& model, int dof) {
   axis.cwiseAbs().maxCoeff(&major);
   if (!model.dofs()[dof].prismatic) {
     const bool positive = axis[major] > 0;
-    if (major == 2) return "positive turns " + carried + " to the " + (positive ? "left" : "right");
+    if (major == 2)
+      return "a positive angle turns " + carried + " to the " + (positive ? "left" : "right");
     if (major == 0 && model.has_soles() &&
         (model.sole(Side::left).body == body || model.sole(Side::right).body == body))
-      return std::string("positive raises the ") + (positive ? "left" : "right") +
+      return std::string("a positive angle raises the ") + (positive ? "left" : "right") +
              " edge of the foot";
     if (major == 1 && model.has_soles())
       for (const Side side : {Side::left, Side::right})
@@ -1216,15 +1230,16 @@ std::string direction_in_words(const RobotModel& model, int dof) {
           const InverseKinematics ik(model, home);
           const int knee = ik.knee(side);
           if (knee >= 0 && is_above(model, model.dofs()[knee].body, body))
-            return std::string("positive turns the toes ") + (positive ? "down" : "up");
-          return std::string("positive swings the leg ") + (positive ? "back" : "forward");
+            return std::string("a positive angle turns the toes ") + (positive ? "down" : "up");
+          return std::string("a positive angle swings the leg ") + (positive ? "back" : "forward");
         }
   }
   shift = trunk.transpose() * shift / std::max(mass, 1e-12);
   shift.cwiseAbs().maxCoeff(&major);
   const bool positive = shift[major] > 0;
   const char* words[3][2] = {{"back", "forward"}, {"to the right", "to the left"}, {"down", "up"}};
-  return "positive moves " + carried + " " + words[major][positive ? 1 : 0];
+  return std::string("a positive ") + (model.dofs()[dof].prismatic ? "displacement" : "angle") +
+         " moves " + carried + " " + words[major][positive ? 1 : 0];
 }
 
 RobotGuess guess_robot(RobotDescription robot) {
@@ -1236,8 +1251,8 @@ RobotGuess guess_robot(RobotDescription robot) {
       find_facing(RobotModel(files), guess);
       turn_to_face_x(files, guess.facing);
       if (guess.facing != "x")
-        files.assumptions.push_back("the robot faces " + guess.facing +
-                                    " of its root link: " + guess.facing_reason.why);
+        files.assumptions.push_back("the robot looks along the axis " + guess.facing +
+                                    " of its root link, because " + guess.facing_reason.why);
     }
     find_soles(guess);
   }
@@ -1246,11 +1261,12 @@ RobotGuess guess_robot(RobotDescription robot) {
     const RobotModel model(files);
     files.postures["home"] = model.description().postures.at("home");
     guess.home_reason = {
-        "the legs reach no balanced posture with bent knees inside the position limits, so every "
-        "joint "
-        "is at 0, or at the limit nearest to 0",
-        "bend the knees by 30 to 45 deg; a straight leg has no room to move"};
-    files.assumptions.push_back("home posture: every joint at 0, or at the limit nearest to 0");
+        "no balanced posture with bent knees was found inside the position limits, so every joint "
+        "is "
+        "at 0, or at its limit nearest to 0",
+        "this posture, and bend the knees by 30 to 45 deg, because a straight leg can hardly move"};
+    files.assumptions.push_back(
+        "in the home posture, every joint is at 0, or at its limit nearest to 0");
   }
   if (files.servos.empty() || files.sidecar_file.empty()) find_servos(guess);
   for (const PlaceholderLimits& each : guess.placeholders)
@@ -1259,8 +1275,8 @@ RobotGuess guess_robot(RobotDescription robot) {
                                 " joints are probably placeholders");
   if (files.profiles.empty())
     files.assumptions.push_back(
-        "actuator limits: velocity and effort of the URDF; a value of 0 means that there is no "
-        "limit");
+        "the actuator limits are the velocity and the effort in the URDF; a value of 0 means that "
+        "there is no limit");
   return guess;
 }
 

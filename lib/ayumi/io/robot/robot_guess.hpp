@@ -73,8 +73,8 @@ std::vector<std::string> gaps_of_the_files(const RobotDescription& robot, size_t
 /// of the legs, and efforts above five times m g z (with the mass m and the COG height z).
 std::vector<PlaceholderLimits> placeholder_limits(const RobotModel& model);
 
-/// The motion of a joint by a positive angle in the home posture, such as "positive bends the
-/// knee".
+/// The motion of a joint by a positive angle in the home posture, such as "a positive angle bends
+/// the knee".
 std::string direction_in_words(const RobotModel& model, int dof);
 
 }  // namespace ayumi

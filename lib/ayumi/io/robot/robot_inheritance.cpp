@@ -170,8 +170,9 @@ class BaseReader {
     for (auto each = again; each != open_.end(); ++each) circle.push_back(each->string());
     base.complain(circle.size() == 1 ? "'" + name + "' is this file itself; name another robot"
                                      : "the bases form a circle: " + text::join(circle, ", ") +
-                                           ", and the last of them names the first one as its "
-                                           "base; remove \"base\" from one of them");
+                                           ". Each of these files names the next file as its "
+                                           "base, and the last file names the first one. Remove "
+                                           "\"base\" from one of these files");
   }
 
   const FindRobot& find_;

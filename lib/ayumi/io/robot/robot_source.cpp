@@ -119,7 +119,8 @@ RobotDescription parse_robot(const std::string& bytes, const fs::path& path,
     case RobotFormat::sidecar:
       break;
   }
-  refuse_robot(path, "this is a sidecar, and the links and joints of a robot are needed");
+  refuse_robot(path,
+               "this is a sidecar, but a file with the links and joints of a robot is needed");
 }
 
 }  // namespace ayumi

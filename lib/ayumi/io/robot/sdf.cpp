@@ -75,8 +75,9 @@ class SdfReader {
     make_joints();
     if (robot_.links.empty()) complain(model, "the model " + robot_.name + " has no <link>");
     if (!massless_.empty())
-      robot_.assumptions.push_back("links without <inertial> weigh 1 kg, as SDF says: " +
-                                   text::join(massless_, ", "));
+      robot_.assumptions.push_back(
+          "links without <inertial> get a mass of 1 kg, as SDF defines it: " +
+          text::join(massless_, ", "));
     validate_links(robot_);
     validate_joints(robot_);
     for (const std::string& note : places_.notes()) robot_.assumptions.push_back(note);
@@ -155,7 +156,8 @@ class SdfReader {
       if (each != best) others.push_back(xml_attribute(each, "name", "a model without name"));
     if (!others.empty())
       robot_.assumptions.push_back(
-          "of several models, the one with the most joints was read; these are left out: " +
+          "the file has several models. Ayumi read the model with the most joints and left these "
+          "models out: " +
           text::join(others, ", "));
     return best;
   }
@@ -362,7 +364,7 @@ class SdfReader {
       if (source.parent == "world" || source.child == "world") {
         robot_.assumptions.push_back(
             "the joint " + source.name +
-            " to the world is left out, because a robot that stands on its feet is free to move");
+            " to the world is left out, because a robot that stands on its feet moves freely");
         continue;
       }
       make_joint(source);

@@ -201,8 +201,8 @@ std::string unused_of_bam(const JsonNode& root, const std::filesystem::path& pat
   if (names.empty()) return "";
   return path.filename().string() + ": " + text::join(names, ", ") +
          (names.size() == 1 ? " of this servo has" : " of this servo have") +
-         " no counterpart in Ayumi, so the simulated servo is without " +
-         (names.size() == 1 ? "it" : "them");
+         " no counterpart in Ayumi, so the simulated servo ignores " +
+         (names.size() == 1 ? "this entry" : "these entries");
 }
 
 Motor read_bam(const JsonNode& node, ServoDescription& servo, ServoGroups& out,
@@ -212,7 +212,7 @@ Motor read_bam(const JsonNode& node, ServoDescription& servo, ServoGroups& out,
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored))
     node.complain("there is no file " + path.string() +
-                  "; a path is relative to the file that names it");
+                  "; state the path relative to the folder of this sidecar");
   const std::string text = read_file(path);
   bytes += text;
   const Json document = parse_json(text, path.string(), ErrorCode::bad_file);
@@ -265,7 +265,7 @@ void read_speed_loop(const JsonNode& group, ServoDescription& servo) {
 void refuse_both(const JsonNode& group, const char* one, const char* other) {
   if (group.has(one) && group.has(other))
     group.complain("the group has both '" + std::string(one) + "' and '" + other +
-                   "', which state the same thing; keep one");
+                   "', which state the same quantity; keep one of these keys");
 }
 
 bool has_gain(const JsonNode& group) {
@@ -285,29 +285,33 @@ void check_group(const JsonNode& group) {
   if (has_gain(group))
     for (const char* key : {"kp", "kd", "position_gain", "speed_gain"})
       if (group.has(key))
-        group.at("motor").at("gain").complain("the group states '" + std::string(key) +
-                                              "' too; keep one of them");
+        group.at("motor").at("gain").complain("the group also states '" + std::string(key) +
+                                              "', but the gain of the motor determines this value; "
+                                              "keep one of these keys");
 }
 
 // Checks that concern more than one field.
 void check_servo(const JsonNode& group, const std::string& joint, const ServoDescription& servo) {
   if (servo.stribeck_torque > 0 && servo.stribeck_rate <= 0)
-    group.complain("joint " + joint +
-                   ": stribeck_torque needs a stribeck_rate above 0, the joint rate at which this "
-                   "friction fades");
+    group.complain(
+        "joint " + joint +
+        ": with a stribeck_torque, stribeck_rate must be above 0. It is the joint rate at "
+        "which the Stribeck friction fades");
   if (servo.stribeck_rate <= 0 &&
       (servo.load.motor_stribeck > 0 || servo.load.external_stribeck > 0 ||
        servo.load.motor_quadratic > 0 || servo.load.external_quadratic > 0))
-    group.complain("joint " + joint +
-                   ": the load friction at rest needs a stribeck_rate above 0, the joint rate at "
-                   "which this friction fades");
+    group.complain(
+        "joint " + joint +
+        ": with load friction at rest, stribeck_rate must be above 0. It is the joint rate "
+        "at which this friction fades");
   if (servo.speed_command_limit > 0 && servo.kd <= 0)
     group.complain("joint " + joint +
-                   ": speed_command_limit needs an inner speed loop; state position_gain and "
-                   "speed_gain");
+                   ": speed_command_limit is given, but the servo has no inner speed loop; state "
+                   "position_gain and speed_gain");
   if (servo.quantized && servo.kp <= 0)
     group.complain("joint " + joint +
-                   ": quantized needs a servo; state kp of this joint, or remove quantized");
+                   ": 'quantized' is given, but the joint has no servo; state kp of this joint, or "
+                   "remove 'quantized'");
 }
 
 }  // namespace

@@ -134,7 +134,7 @@ std::map<std::string, ServoDescription> read_servos(
   for (const auto& [joint, stated] : groups.stated) servos[joint] = groups.servos[joint];
   for (const auto& [joint, servo] : groups.servos)
     if (servo.offset != 0 && !groups.stated.contains(joint))
-      node.complain("these groups state an offset of " + joint +
+      node.complain("the groups state an offset of " + joint +
                     ", but no servo of this joint; state its kp, too");
   return servos;
 }
@@ -213,19 +213,20 @@ void read_columns(const JsonNode& node, SequenceLayout& layout) {
       item.complain("the column 'interval' must be the first one");
     if (column.empty() || column.find_first_of(", \t\r\n\"") != std::string::npos)
       item.complain("'" + column +
-                    "' is not the text of a column; expected interval, motors, * or a text "
-                    "without blanks and commas");
+                    "' cannot be the text of a column; give interval, motors, * or a text without "
+                    "blanks, commas and quotation marks");
     side->push_back(column);
   }
   if (side == &layout.before) node.complain("the column 'motors' is missing");
   if (!layout.has_interval()) return;
   if (layout.before.size() != 2 || layout.before[1] != "2")
     node.complain(
-        "after 'interval' must come \"2\", the code of a row of targets, and then 'motors'");
+        "after 'interval', a layout needs \"2\", which is the code of a row of targets, and then "
+        "'motors'");
   if (is_among(layout.after, "*"))
     node.complain(
-        "'*' (any text) is possible only in layouts without 'interval', because Ayumi writes the "
-        "layouts with 'interval' and needs to know every text in them");
+        "'*' (any text) is possible only in layouts without 'interval'. Ayumi writes files in the "
+        "layouts with 'interval', so it must know every text in these layouts");
 }
 
 void read_layouts(const JsonNode& node, RobotDescription& robot) {
@@ -248,7 +249,8 @@ void read_layouts(const JsonNode& node, RobotDescription& robot) {
       layout.radians = unit->one_of({"counts", "rad"}) == "rad";
     if (layout.radians && layout.has_interval())
       item.at("unit").complain(
-          "a layout with 'interval' holds servo targets, and their unit must be counts");
+          "a layout with 'interval' contains servo targets, and the unit of servo targets must be "
+          "counts");
     if (const auto intervals = item.find("intervals_ms"))
       for (const JsonNode& interval : intervals->items()) {
         layout.intervals_ms.push_back(interval.integer());
@@ -280,7 +282,7 @@ void read_load_cells(const JsonNode& node, std::map<std::string, LoadCells>& fee
     if (cells.cells.size() != cells.columns.size())
       foot.at("cells").complain("there are " + std::to_string(cells.cells.size()) +
                                 " polynomials for " + std::to_string(cells.columns.size()) +
-                                " columns; give one for each");
+                                " columns; give one polynomial for each column");
     cells.force = foot.at("force").numbers();
     feet[side] = cells;
   }
@@ -332,7 +334,7 @@ void read_sensors(const JsonNode& node, SensorDescription& sensors) {
     sensors.force_readings = readings->integer();
     if (sensors.force_readings < 1 || sensors.force_readings > kMostForceReadings)
       readings->complain("a mean of " + std::to_string(sensors.force_readings) +
-                         " readings is not possible; expected 1 (every reading by itself) to " +
+                         " readings is not possible; expected a number from 1 (no mean) to " +
                          std::to_string(kMostForceReadings));
   }
   if (const auto cells = node.find("force_cells")) read_force_cells(*cells, sensors.force_cells);
@@ -492,9 +494,9 @@ void check_offsets(const JsonNode& root, const RobotDescription& robot) {
       if (known && *known != offset)
         root.at("profiles")
             .complain("the encoder of " + joint + " has an offset of " + degrees(offset) +
-                      " in the profile '" + profile.name + "', but of " + degrees(*known) + " in " +
-                      where +
-                      "; an offset belongs to the robot unit, so state it once, in "
+                      " in the profile '" + profile.name + "', but an offset of " +
+                      degrees(*known) + " in " + where +
+                      ". An offset belongs to the robot and not to a profile, so state it once, in "
                       "'servos'");
       if (!known) where = "the profile '" + profile.name + "'";
       known = offset;
@@ -542,8 +544,9 @@ std::filesystem::path find_urdf(const JsonNode& node,
   for (const std::filesystem::path& folder : folders)
     for (const std::filesystem::path& path : {folder / name, folder / "urdf" / name})
       if (std::filesystem::exists(path, ignored)) return path;
-  node.complain("there is no file " + beside.string() + ", and " + name.string() +
-                " is neither in a folder of --robot-path nor in its subfolder urdf/");
+  node.complain("there is no file " + beside.string() +
+                ", and no folder of --robot-path contains " + name.string() + " or urdf/" +
+                name.string() + "; correct the path");
 }
 
 }  // namespace

@@ -145,7 +145,7 @@ class Checker {
     std::vector<std::string> words;
     for (const auto& [name, each] : found)
       words.push_back("<" + name + "> is not an element of a " + each.parent + "; did you mean <" +
-                      each.meant + ">? (" + text::counted(each.count, each.parent) + ")");
+                      each.meant + ">? (in " + text::counted(each.count, each.parent) + ")");
     complain(found.front().second.first, text::join(words, "; "));
   }
 

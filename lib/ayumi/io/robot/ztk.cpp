@@ -236,7 +236,7 @@ class ZtkReader {
     for (const ZtkField& field : section.fields)
       if (field.key == "center") ends.push_back(vector(field));
     if (ends.size() != 2 || !((ends[1] - ends[0]).norm() > 0))
-      complain(section.line, "two different centers are needed, those of both ends");
+      complain(section.line, "the centers of both ends are needed, and they must differ");
     const double length = (ends[1] - ends[0]).norm(), radius = positive(section, "radius");
     placed.pose.translation() = 0.5 * (ends[0] + ends[1]);
     placed.pose.linear() = turn_of_z(ends[1] - ends[0]);

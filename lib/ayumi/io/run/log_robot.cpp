@@ -29,7 +29,7 @@ void require_attitudes(const SimulationSample& sample, double t, const std::stri
       fail(ErrorCode::bad_file, {source},
            "at t = " + text::fixed(t, 3) + " s the quaternion of an attitude has the length " +
                text::brief(base->attitude.norm()) +
-               " and not 1; the log has changed; run the pattern again");
+               ", but 1 is needed. The log has changed since the run; run the pattern again");
 }
 
 struct Carried {
@@ -73,9 +73,9 @@ void require_postures_of(const RobotModel& model, const SimulationLog& log,
                          const std::string& source) {
   if (log.joints != model.dof_names())
     fail(ErrorCode::bad_file, {source},
-         "the joints of the run (" + text::join(log.joints, ", ") +
-             ") are not those of the robot '" + model.name() + "' (" +
-             text::join(model.dof_names(), ", ") + "); name the robot of the run with --robot");
+         "the run has the joints " + text::join(log.joints, ", ") + ", but the robot '" +
+             model.name() + "' has the joints " + text::join(model.dof_names(), ", ") +
+             "; name the robot of the run with --robot");
   for (size_t k = 0; k < log.samples.size(); ++k)
     require_attitudes(log.samples[k], static_cast<double>(k) * log.dt, source);
 }
@@ -103,11 +103,11 @@ void require_robot_of(const RobotModel& model, const SimulationLog& log,
     const double off = (moment / mass - sample.cog).norm();
     if (known && !(off < kSameRobot))
       fail(ErrorCode::bad_file, {source},
-           "at t = " + text::fixed(t, 3) + " s the COG of robot '" + model.name() +
-               "' differs from the COG in the log at the same posture by " +
-               text::brief(1e3 * off) + " mm (allowed " + text::brief(1e3 * kSameRobot) +
-               " mm); this is another robot, or the robot or the log has changed since the run; "
-               "run the pattern again");
+           "with the posture at " + text::fixed(t, 3) + " s, the COG of the robot '" +
+               model.name() + "' differs from the COG in the log by " + text::brief(1e3 * off) +
+               " mm, but at most " + text::brief(1e3 * kSameRobot) +
+               " mm are allowed. The log belongs to another robot, or the robot or the log has "
+               "changed since the run; run the pattern again");
   }
 }
 

@@ -92,16 +92,15 @@ OrderedJson summary_of(const RunFolder& run, const std::map<std::string, std::st
 
 [[noreturn]] void complain_of_change(const fs::path& file, const std::string& what) {
   fail(ErrorCode::bad_file, {file.string()},
-       "the file has changed since the run was written (" + what +
-           " in run.json); make the run again");
+       "the file has changed since the run was written, because " + what + "; make the run again");
 }
 
-constexpr const char* kOtherHash = "its SHA-256 differs from the value";
+constexpr const char* kOtherHash = "its SHA-256 differs from the value in run.json";
 
 [[noreturn]] void complain_of_unlisted(const fs::path& file) {
   fail(ErrorCode::bad_file, {file.string()},
-       "the run does not list this file in \"files\" of its run.json, so the file is of another "
-       "run or was changed; remove the file, or make the run again");
+       "run.json does not list this file in \"files\", so the file belongs to another run or was "
+       "changed; remove the file, or make the run again");
 }
 
 // Whether a name is that of a file in the folder itself.
@@ -146,8 +145,8 @@ std::string other_size(const HashedFile& file, const JsonNode& root, const std::
   const auto sizes = root.find(kSizesKey);
   const auto recorded = sizes ? sizes->find(name) : std::nullopt;
   if (!recorded || recorded->unsigned_integer() == file.size()) return "";
-  return "it has " + std::to_string(file.size()) + " bytes, but " +
-         std::to_string(recorded->unsigned_integer());
+  return "it has " + std::to_string(file.size()) + " bytes, but run.json states " +
+         std::to_string(recorded->unsigned_integer()) + " bytes";
 }
 
 // What `use` makes of a file of the run, after its bytes were compared with what run.json records.
@@ -200,8 +199,8 @@ struct RunFile {
   void require_seal() const {
     const auto missing = [&](const std::string& member) {
       root().complain("the member '" + member +
-                      "' is missing: the file has changed, or an older version wrote it; make the "
-                      "run again");
+                      "' is missing. The file has changed, or an older version of Ayumi wrote the "
+                      "file; make the run again");
     };
     if (!is_sealed(text)) missing(kSealKey);
     const auto sizes = root().find(kSizesKey);
@@ -220,8 +219,9 @@ struct RunFile {
                       "' is not the name of a file in this folder; make the run again");
     for (const auto& [name, log] : root().at("logs").members())
       if (const JsonNode file = log.at("file"); file.string() != log_file_name(name))
-        file.complain("'" + text::quotable(file.string()) + "' is not the file of this log, " +
-                      log_file_name(name) + "; make the run again");
+        file.complain("'" + text::quotable(file.string()) +
+                      "' is not the file of this log; the file must be " + log_file_name(name) +
+                      ". Make the run again");
       else if (!files.has(log_file_name(name)))
         complain_of_unlisted(folder / log_file_name(name));
     if (const auto sizes = root().find(kSizesKey))

@@ -48,7 +48,7 @@ void read_causes(const std::vector<JsonNode>& nodes, std::vector<Finding>& findi
     if (const auto node = nodes[i].find("cause"); node && !node->value().is_null()) {
       findings[i].cause = node->integer();
       if (findings[i].cause < 0 || findings[i].cause >= count)
-        node->complain("a cause is the number of a finding, from 0 to " +
+        node->complain("the number of a cause must be the number of a finding, from 0 to " +
                        std::to_string(count - 1));
     }
   // For each finding, the number of the walk that first came to it. A walk ends at a finding of an
@@ -161,7 +161,7 @@ std::vector<PushThreshold> read_push_thresholds(const std::filesystem::path& fil
   for (const JsonNode& push : root.at("cases").items()) {
     const std::vector<JsonNode> limits = push.at("limits").items();
     if (limits.size() != controllers.size())
-      push.at("limits").complain("one limit per controller of the study is needed");
+      push.at("limits").complain("one limit is needed for each controller of the study");
     for (size_t c = 0; c < limits.size(); ++c)
       thresholds.push_back(
           {.phase = push.at("phase").string(),

@@ -31,7 +31,8 @@ std::string wrong_seal(const std::string& text) {
   if (is_sealed(text)) return "";
   const std::string key = std::string("\"") + kSealKey + "\"";
   if (text.find(key) == std::string::npos)
-    return "the file has no " + key + ": an older version of Ayumi wrote it, or it was changed";
+    return "the file has no " + key +
+           ", so an older version of Ayumi wrote the file, or the file was changed";
   return "the file has changed since Ayumi wrote it (its SHA-256 differs from " + key + ")";
 }
 

@@ -192,8 +192,8 @@ std::string header_of(const SimulationLog& log, size_t rows, const std::string& 
 void read_header(const JsonNode& header, SimulationLog& log) {
   log.dt = header.at("dt").number();
   if (!(log.dt >= kShortestServoPeriod && log.dt <= kLongestServoPeriod))
-    header.at("dt").complain("the tick is " + text::brief(log.dt) +
-                             " s; it must be from 1e-7 to 10 s, as a servo period");
+    header.at("dt").complain("the time between two samples is " + text::brief(log.dt) +
+                             " s, but it must be from 1e-7 to 10 s");
   const JsonNode controller = header.at("controller");
   if (!controller.string().empty())
     log.controller = controller_type(controller.one_of(controller_names()));
@@ -331,11 +331,13 @@ LogHead read_head(const NextBytes& next, size_t size, const std::string& file) {
   head.columns = columns_of(head.log.joints);
   if (header.at("columns").strings() != head.columns)
     header.at("columns").complain(
-        "these are not the columns of this version of Ayumi; simulate again");
+        "another version of Ayumi wrote this log, because its columns differ from the columns of "
+        "this "
+        "version; simulate again");
   head.rows = static_cast<size_t>(header.at("rows").unsigned_integer());
   if (head.rows > kMostBytes / head.row_bytes())
-    header.at("rows").complain("this is more than a log may have (" +
-                               std::to_string(kMostBytes / head.row_bytes()) + ")");
+    header.at("rows").complain("a log may have at most " +
+                               std::to_string(kMostBytes / head.row_bytes()) + " rows");
   head.block_rows = head.rows;
   if (version_of_file == kInBlocks) {
     const JsonNode stated = header.at("block_rows");

@@ -39,7 +39,7 @@ char separator_of(std::string_view row, const std::string& file) {
     if (row.find(candidate) != std::string_view::npos) return candidate;
   if (std::count(row.begin(), row.end(), ' ') > 1)
     fail(ErrorCode::bad_file, {file},
-         "only blanks separate the columns; use commas, semicolons or tabs");
+         "the columns are separated by blanks; use commas, semicolons or tabs");
   return ',';
 }
 
@@ -62,8 +62,8 @@ std::string without_outer_cells(std::string_view text, bool first, bool last,
         if (first && !(names && cell == std::to_string(row)))
           fail(ErrorCode::bad_file, {file, "", head_line},
                "the first cell is empty, but only a column that counts the rows (0, 1, 2, ... or "
-               "1, 2, 3, ...) needs no name; write t into this cell if the column has the times, "
-               "or remove the column");
+               "1, 2, 3, ...) needs no name. If the column has the times, write t into this cell; "
+               "otherwise remove the column");
         ++row;
       }
       if (first) line.remove_prefix(std::min(line.find(',') + 1, line.size()));

@@ -127,19 +127,21 @@ BareRows sequence_rows(std::string_view rest, const std::string& file, size_t de
     const auto interval = number_of(cells[0]);
     if (cells.size() < 3 || !interval || *interval < 1 || *interval != std::round(*interval) ||
         (cells[1] != "2" && cells[1] != "3"))
-      complain(file, line,
-               "expected an interval [ms], then the code 2 (targets follow) or 3 (a command to one "
-               "device follows)");
+      complain(
+          file, line,
+          "a row must begin with an interval [ms] and a code. The code is 2 if targets follow, "
+          "and 3 if a command to one device follows");
     if (cells[1] == "2") {
       if (columns != 0 && cells.size() != columns)
         complain(file, line,
                  "the row has " + std::to_string(cells.size()) +
-                     " columns, but the rows before have " + std::to_string(columns));
+                     " columns, but each row before it has " + std::to_string(columns));
       columns = cells.size();
       if (columns < 2 + devices)
         complain(file, line,
-                 std::to_string(columns) + " columns are too few for the robot's " +
-                     std::to_string(devices) + " devices");
+                 "the row has " + std::to_string(columns) + " columns, but the " +
+                     std::to_string(devices) + " devices of the robot need at least " +
+                     std::to_string(2 + devices) + " columns");
       if (!rows.empty()) tick = std::gcd(tick, now - rows.back().at);
       rows.push_back({now, numbers_of(cells, 2, 2 + devices, file, line), line});
     }
@@ -177,7 +179,7 @@ BareRows bare_rows(const std::string& bytes, const std::string& file, size_t nee
     if (cells.size() != columns)
       complain(file, line,
                "the row has " + std::to_string(cells.size()) +
-                   " columns, but the rows before have " + std::to_string(columns));
+                   " columns, but each row before it has " + std::to_string(columns));
     if (columns < needed)
       complain(file, line,
                "the row has " + std::to_string(columns) + " columns, but " + what + " needs " +
@@ -221,17 +223,19 @@ void require_motion(const AngleTable& table, const std::vector<size_t>& lines,
     const double limit = jump_limit(model, j, table.dt, table.resolution[j]);
     for (Index k = 1; k < theta.size(); ++k)
       if (std::abs(theta[k] - theta[k - 1]) > limit)
-        complain(file, lines[static_cast<size_t>(k)],
-                 dof.name + " jumps by " +
-                     text::brief(std::abs(theta[k] - theta[k - 1]) / kRadiansPerDegree, 3) +
-                     " deg from the row before, but a motor moves at most " +
-                     text::brief(limit / kRadiansPerDegree, 3) +
-                     " deg in this time. Samples are missing, or the 16-bit counter has "
-                     "overflowed: record again, or add or subtract 65536 counts from this row on");
+        complain(
+            file, lines[static_cast<size_t>(k)],
+            dof.name + " jumps by " +
+                text::brief(std::abs(theta[k] - theta[k - 1]) / kRadiansPerDegree, 3) +
+                " deg from the row before, but a motor moves at most " +
+                text::brief(limit / kRadiansPerDegree, 3) +
+                " deg in this time. Samples are missing, or the 16-bit counter of the encoder "
+                "has overflowed. Record again; after an overflow, you can also add or subtract "
+                "65536 counts from this row on");
     require_less_than_a_turn(table, j, model, file);
   }
   if (!any)
-    complain(file, "every angle is 0, so the robot or its recorder was not running; record again");
+    complain(file, "all angles are 0, so the robot or its recorder was not running; record again");
 }
 
 AngleTable empty_table(const RobotModel& model, Index rows, double dt) {
@@ -267,7 +271,7 @@ size_t device_count(const RobotModel& model, const std::string& file) {
   for (const Dof& dof : model.dofs()) devices = std::max(devices, dof.encoder.device);
   if (devices == 0)
     complain(file, "the rows are counts, but the robot '" + model.name() +
-                       "' has no encoders; add \"encoders\" to its sidecar");
+                       "' has no encoders; add \"encoders\" to the sidecar of the robot");
   return static_cast<size_t>(devices);
 }
 
@@ -317,9 +321,9 @@ double interval_of(const NumberTable& table, const RecordingOptions& options,
     const long lost = std::max(1L, std::lround(steps[k] / usual) - 1);
     if (steps[k] > (1 + kGap) * usual)
       complain(file, at + text::counted(lost, "sample") + (lost == 1 ? " is" : " are") +
-                         " missing: " + text::brief(1000 * steps[k]) +
-                         " ms pass before the next row, but usually " + text::brief(1000 * usual) +
-                         " ms; record again");
+                         " missing, because the next row comes " + text::brief(1000 * steps[k]) +
+                         " ms later, but usually a row comes " + text::brief(1000 * usual) +
+                         " ms after the row before; record again");
   }
   return (t[rows - 1] - t[0]) / static_cast<double>(rows - 1);
 }
@@ -407,7 +411,8 @@ SensorTable bare_sensors(const std::string& bytes, const std::string& file, cons
   const bool cells = sensors.load_cells.contains("left") && sensors.load_cells.contains("right");
   if (!cells && sensors.accelerometer.columns.empty() && sensors.gyro.columns.empty())
     complain(file, "the rows are readings without names, but the sidecar of '" + model.name() +
-                       "' does not say what they are; add \"load_cells\" to its \"sensors\"");
+                       "' does not say which sensors the columns belong to; add \"load_cells\" to "
+                       "\"sensors\" in the sidecar");
   int needed = 1;
   for (const AxisReadings* axes : {&sensors.accelerometer, &sensors.gyro})
     for (const int column : axes->columns) needed = std::max(needed, column);
@@ -435,7 +440,7 @@ SensorTable bare_sensors(const std::string& bytes, const std::string& file, cons
     }
   if (!any)
     complain(file,
-             "every reading of the load cells is 0, so the sensors were not running; record again");
+             "all readings of the load cells are 0, so the sensors were not running; record again");
   return table;
 }
 
@@ -468,16 +473,17 @@ SensorTable named_sensors(const std::string& bytes, const std::string& file,
     for (const int side : {0, 1})
       result.foot_load.col(side) = table.values.col(foot[static_cast<size_t>(side)]);
     if (result.foot_load.cwiseAbs().maxCoeff() <= 0)
-      complain(file, "every load of the feet is 0, so the sensors were not running; record again");
+      complain(file, "all loads of the feet are 0, so the sensors were not running; record again");
   }
   result.acceleration = named_axes(table, "acc", "m/s^2");
   result.gyro = named_axes(table, "gyro", "rad/s");
   if (result.foot_load.size() == 0 && result.acceleration.size() == 0 && result.gyro.size() == 0)
-    complain(file,
-             "no column has the name of a joint or a sensor; columns of joints have the names of "
-             "the robot's joints, as in r_knee or r_knee[deg], and those of sensors are "
-             "fz.left[N] and fz.right[N], acc.x[m/s^2], acc.y[m/s^2] and acc.z[m/s^2], and "
-             "gyro.x[rad/s], gyro.y[rad/s] and gyro.z[rad/s]");
+    complain(
+        file,
+        "no column has the name of a joint or a sensor. A column of a joint has the name of the "
+        "joint, as in r_knee or r_knee[deg]. The columns of sensors are fz.left[N] and "
+        "fz.right[N]; acc.x[m/s^2], acc.y[m/s^2] and acc.z[m/s^2]; gyro.x[rad/s], "
+        "gyro.y[rad/s] and gyro.z[rad/s]");
   return result;
 }
 
@@ -500,9 +506,10 @@ void require_rate(const RecordingOptions& options) {
 void require_rate_of_rows(double dt, const std::string& file) {
   const double rate = rate_of_rows(dt);
   if (!(rate >= kRecordingRate.least && rate <= kRecordingRate.most))
-    complain(file, "the file has " + text::brief(rate) + " rows per second, but a recording has " +
+    complain(file, "the file has " + text::brief(rate) +
+                       " rows per second, but a recording must have from " +
                        text::exact(kRecordingRate.least) + " to " +
-                       text::exact(kRecordingRate.most) + "; correct the times");
+                       text::exact(kRecordingRate.most) + " rows per second; correct the times");
 }
 
 AngleTable readings_of(const std::string& bytes, const std::string& file, const RobotModel& model,
@@ -525,9 +532,10 @@ AngleTable readings_of(const std::string& bytes, const std::string& file, const 
     for (const double value : rows.rows[r])
       if (value != std::round(value))
         complain(file, rows.lines[r],
-                 "rows without names are counts, but " + text::brief(value) +
-                     " is not a whole number; if these are angles, add a first row with the names "
-                     "of the columns, such as t[s] and " +
+                 "the columns have no names, so their values must be encoder counts, but " +
+                     text::brief(value) +
+                     " is not a whole number. If the values are angles, add a first row with the "
+                     "names of the columns, such as t[s] and " +
                      model.dof_names().front() + "[rad]");
   for (size_t r = 0; r < rows.rows.size(); ++r)
     for (size_t c = devices; c < rows.rows[r].size(); ++c)

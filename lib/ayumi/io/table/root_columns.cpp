@@ -130,13 +130,15 @@ void name_root_columns(NumberTable& table, const std::string& file,
   };
   if (places.size() > 1 || turns.size() > 1)
     fail(ErrorCode::bad_file, {file},
-         "the motion of the root may be in the columns of " +
+         "several groups of columns can be the motion of the root. These groups begin with the "
+         "columns " +
              (places.size() > 1 ? columns_of(places, 0) : columns_of(turns, 3)) +
              "; keep one of these groups");
   if (roots[places[0]].twice || roots[turns[0]].twice)
     fail(ErrorCode::bad_file, {file},
-         "two columns hold the same number of the root beside '" +
-             table.columns[size_t(roots[places[0]].at[0])] + "'; keep one of them");
+         "in the group of columns of the root with '" +
+             table.columns[size_t(roots[places[0]].at[0])] +
+             "', two columns have the same meaning; keep one of these two columns");
   std::vector<std::string> names;
   for (size_t member = 0; member < kBaseColumns.size(); ++member) {
     const Found& found = roots[member < 3 ? places[0] : turns[0]];

@@ -244,9 +244,10 @@ ReferenceTrajectory parse_reference(const std::string& bytes, const std::string&
   const TableLayout layout = layout_of(table, file);
   if (layout.joints.empty() || layout.cog.empty() || layout.zmp.empty() || layout.fz < 0 ||
       layout.base.empty() || layout.contact.empty())
-    fail(ErrorCode::bad_file, {file},
-         "a reference table has theta, cog, zmp, fz, base and "
-         "contact columns; some are missing");
+    fail(
+        ErrorCode::bad_file, {file},
+        "a reference table needs the columns of theta, cog, zmp, fz, base and contact, but some of "
+        "these columns are missing; export the table again");
   ReferenceTrajectory reference;
   reference.dt = tick_of(table, layout, file);
   reference.joints = layout.joints;

@@ -51,7 +51,8 @@ std::vector<int> group_of(const NumberTable& table, const std::vector<std::strin
   }
   if (present.empty()) return {};
   if (!missing.empty())
-    stop(file, "the column '" + missing + "' is missing beside '" + present + "'");
+    stop(file, "the table has the column '" + present + "', but the column '" + missing +
+                   "' is missing; add the missing column");
   return found;
 }
 
@@ -178,16 +179,17 @@ double tick_of(const NumberTable& table, const TableLayout& layout, const std::s
   for (Eigen::Index k = 0; k < rows; ++k) {
     if (k > 0 && t[k] <= t[k - 1])
       stop(file, "row " + std::to_string(k + 1) + ": time " + text::exact(t[k]) +
-                     " s does not come after " + text::exact(t[k - 1]) + " s");
+                     " s does not come after " + text::exact(t[k - 1]) +
+                     " s of the row before; times must increase");
     if (std::abs(t[k] - static_cast<double>(k) * dt) > 1e-6 + 1e-4 * dt)
       stop(file, "row " + std::to_string(k + 1) + ": time " + text::exact(t[k]) + " s, but " +
                      text::exact(static_cast<double>(k) * dt) +
                      " s is expected, because the rows start at 0 s and are evenly spaced");
   }
   if (rows > 1 && !(dt >= kShortestServoPeriod && dt <= kLongestServoPeriod))
-    stop(file, "the rows are " + text::brief(dt) + " s apart, but " +
+    stop(file, "the time between two rows is " + text::brief(dt) + " s, but it must be from " +
                    text::brief(kShortestServoPeriod) + " to " + text::brief(kLongestServoPeriod) +
-                   " s are possible, as for the period of a servo");
+                   " s");
   return dt;
 }
 
@@ -215,8 +217,8 @@ Eigen::VectorXd zeros_of(const NumberTable& table, const TableLayout& layout,
   const size_t joints = layout.joints.size();
   if (!words.eof() || zeros.size() != joints)
     fail(ErrorCode::bad_file, {file},
-         "servo_offset in the head has to be " + std::to_string(joints) +
-             " numbers, one for each joint [rad], but it is '" + found->second +
+         "servo_offset in the head must have " + std::to_string(joints) +
+             " numbers, one for each joint [rad], but the head has '" + found->second +
              "'; export the table again");
   return Eigen::Map<const Eigen::VectorXd>(zeros.data(), static_cast<Eigen::Index>(joints));
 }
