@@ -229,7 +229,8 @@ TEST(ExportSafety, TorquesBeyondThePeakMakeARunUnsafe) {
   EXPECT_FALSE(report.safe);
   ASSERT_EQ(report.violations.size(), 1u);
   const SafetyViolation& worst = report.violations[0];
-  EXPECT_EQ(worst.kind + " " + worst.joint, "torque b");
+  EXPECT_EQ(worst.kind, TableLimit::torque);
+  EXPECT_EQ(worst.joint, "b");
   EXPECT_EQ(worst.value, 1.5 * peak);
   EXPECT_EQ(worst.limit, peak);
   EXPECT_NEAR(worst.t, report.ramp + 4 * table.dt, 1e-9);
