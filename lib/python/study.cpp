@@ -149,12 +149,14 @@ void bind_push(py::module_& m) {
       py::arg("duration") = PushOptions().duration, py::arg("seed") = 1, py::arg("threads") = 0,
       py::arg("progress") = py::none(),
       "The largest push that the robot survives, by phase of the gait and direction, in open loop "
-      "and with each controller (the controller of the pattern when none is named). `times` [s] in "
-      "place of the "
-      "default phases; `step`: resolution of the search, and `cap`: largest push tried, both as "
-      "multiples of the capture bound; `replicas`: number of small variations of every push, all "
-      "of which the robot must survive; `duration` of a push [s]; "
-      "`threads`: 0 for all; the results do not depend on this number.");
+      "and with each controller (the controller of the pattern when none is named). `times` [s] "
+      "replace the default phases. `step` is the resolution of the search, and `cap` is the "
+      "largest "
+      "push tried, both as multiples of the capture bound. `replicas` is the number of small "
+      "variations of every push; the robot must survive all of them. `duration` is the duration of "
+      "a "
+      "push [s]. `threads` is the number of threads, and 0 means all; the results do not depend on "
+      "this number.");
 }
 
 void bind_gains(py::module_& m) {
@@ -249,7 +251,8 @@ void bind_gains(py::module_& m) {
       py::arg("rounds") = TuneOptions().rounds, py::arg("seed") = 1, py::arg("threads") = 0,
       py::arg("progress") = py::none(),
       "Searches for better gains of DTAD. `start`: gains to begin with; `times` of the pushes [s]; "
-      "`level` of a push in capture bounds; `gains`: names of the gains that are changed.");
+      "`level` is the size of a push as a multiple of the capture bound. `gains` are the names of "
+      "the gains that are changed.");
 }
 
 void bind_local_pace(py::module_& m) {

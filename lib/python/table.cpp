@@ -60,7 +60,8 @@ void bind_table(py::module_& m) {
                                  : reference_csv(t.data(), t.data().caution));
           },
           py::call_guard<py::gil_scoped_release>(), py::arg("path"),
-          "Writes CSV, or JSON where the name ends in .json; whole or not at all.")
+          "Writes the table as CSV, or as JSON if the name ends in .json. The file is written "
+          "whole or not at all.")
       .def(
           "resampled",
           [](const Table& t, double dt) {
