@@ -231,7 +231,7 @@ Said run_command(const std::vector<std::string>& arguments, const fs::path& fold
   std::array<int, 2> out{}, err{};
   if (::pipe(out.data()) != 0 || ::pipe(err.data()) != 0)
     fail(ErrorCode::bad_file,
-         "the export cannot be started, because the system allows no more pipes; close other "
+         "the export cannot be started, because the system allows no more pipes. Close other "
          "programs and try again");
   std::vector<char*> words;
   for (const std::string& word : arguments) words.push_back(const_cast<char*>(word.c_str()));
@@ -240,7 +240,7 @@ Said run_command(const std::vector<std::string>& arguments, const fs::path& fold
   const pid_t child = ::fork();
   if (child < 0)
     fail(ErrorCode::bad_file,
-         "the export cannot be started, because the system allows no more processes; close other "
+         "the export cannot be started, because the system allows no more processes. Close other "
          "programs and try again");
   if (child == 0) {
     ::dup2(out[1], STDOUT_FILENO);

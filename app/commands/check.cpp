@@ -370,7 +370,7 @@ void watch(Context& context, const CheckCommand& options) {
   if (file == "-")
     fail(
         ErrorCode::usage,
-        "check --watch: standard input does not change, so there is nothing to watch; name a file");
+        "check --watch: standard input does not change, so there is nothing to watch. Name a file");
   Stamps seen;
   std::optional<int> errors;
   while (true) {
@@ -431,7 +431,7 @@ void add_check(Command& app, Context& context) {
       "  ayumi check a.json b.json --json\n  ayumi check walk.json --watch\n"
       "  ayumi check walk.json --plot joints.svg\n"
       "  ayumi check --tolerances\n"
-      "check assumes level ground; slopes, bumps and moving floors are tested by simulate only.");
+      "check assumes level ground. Slopes, bumps and moving floors are tested by simulate only.");
   static CheckCommand options;
   command->add_option("PATTERN", options.patterns, "Pattern files.");
   command

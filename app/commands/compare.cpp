@@ -58,14 +58,14 @@ Recordings read_recordings(const CompareCommand& options, const RobotModel& mode
     }
     if (all.angles)
       fail(ErrorCode::usage, {file},
-           "another file already contains joint angles; give only one such file");
+           "another file already contains joint angles. Give only one such file");
     all.angles = read_angles(bytes, file, model, options.reading);
   };
   for (const std::string& file : options.measured) add(file, false);
   if (!options.loads.empty()) add(options.loads, true);
   if (all.names.empty())
     fail(ErrorCode::usage,
-         "compare: no recording is given; name a recording of joint angles or of sensors");
+         "compare: no recording is given. Name a recording of joint angles or of sensors");
   return all;
 }
 
@@ -74,10 +74,10 @@ std::string curve_words(const ComparedCurve& curve, double unit, const std::stri
                       " on average, at most " + text::brief(curve.largest / unit, 3) + name +
                       " at " + text::fixed(curve.largest_at, 3) + " s";
   if (std::abs(curve.lag) >= 0.00005)  // a lag that would be printed as 0.0 ms is left out
-    words += "; the recording is " + text::fixed(1000 * std::abs(curve.lag), 1) +
+    words += ". The recording is " + text::fixed(1000 * std::abs(curve.lag), 1) +
              (curve.lag > 0 ? " ms behind the run" : " ms ahead of the run");
   if (curve.unit != "rad" && curve.correlation != 0)
-    words += "; the correlation is " + text::fixed(curve.correlation, 3);
+    words += ". The correlation is " + text::fixed(curve.correlation, 3);
   return words + "\n";
 }
 

@@ -42,7 +42,7 @@ std::string joint_words(const IdentifiedJoint& j) {
   std::string words = "  " + j.joint + ": ";
   if (!j.moved)
     return words +
-           "the command does not move this joint; the measured angle minus the command is " +
+           "the command does not move this joint. The measured angle minus the command is " +
            text::fixed(j.offset.value / kIdentifiedDegree, 3) + " deg\n";
   words += "delay " + estimate_words(j.delay, 1e-3, 2, "ms");
   if (j.kp.known)
@@ -56,7 +56,7 @@ std::string joint_words(const IdentifiedJoint& j) {
   words += ", offset from the command " + estimate_words(j.offset, kIdentifiedDegree, 3, "deg");
   if (j.has_sag)
     words += ", sag " + text::fixed(j.sag / kIdentifiedDegree, 3) + " deg between swing and stance";
-  words += "; the model differs from the recording by " +
+  words += ". The model differs from the recording by " +
            text::fixed(j.mean_error / kIdentifiedDegree, 3) + " deg on average and by at most " +
            text::fixed(j.largest_error / kIdentifiedDegree, 3) + " deg at " +
            text::fixed(j.largest_at, 3) + " s\n";
@@ -132,7 +132,7 @@ void identify_servos(const Context& context, const IdentifyCommand& options) {
   if (how.stand == RobotStand::feet && !model.has_soles())
     fail(ErrorCode::bad_model,
          options.robot +
-             ": the robot has no soles; add \"soles\" to the sidecar, or use --stand "
+             ": the robot has no soles. Add \"soles\" to the sidecar, or use --stand "
              "fixed");
   how.longest_lag = 0.001 * options.longest_lag_ms;
   how.loads_place = options.loads;
@@ -140,7 +140,7 @@ void identify_servos(const Context& context, const IdentifyCommand& options) {
   const Identification found = identify(model, motion, how, options.measured, context.progress());
   std::string words = options.measured + ": " + text::fixed(found.seconds, 3) + " s, " +
                       std::to_string(found.joints.size()) +
-                      " joints; values with their 95 % intervals\n";
+                      " joints. Each value is followed by its 95 % interval\n";
   if (!found.caution.empty()) words += "  " + found.caution + "\n";
   Json joints = Json::array();
   bool advice = false;

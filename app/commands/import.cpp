@@ -74,7 +74,7 @@ void refuse_own_input(const ImportCommand& options) {
     if (fs::equivalent(path, options.file, ignored))
       fail(ErrorCode::bad_file, {options.file},
            "the result would overwrite this file (" + path.string() +
-               "); choose another name with -o");
+               "). Choose another name with -o");
 }
 
 void import_motion(const Context& context, const ImportCommand& options) {
