@@ -322,7 +322,7 @@ TEST_F(Usage, AnOptionIsNoValue) {
 TEST_F(Usage, StandardInputCannotBeWatched) {
   const Output output = ayumi({"check", "-", "--watch"});
   EXPECT_EQ(output.exit_code, 2);
-  EXPECT_NE(output.err.find("name a file"), std::string::npos) << output.err;
+  EXPECT_NE(output.err.find("Name a file"), std::string::npos) << output.err;
 }
 
 TEST_F(Usage, GainsThatCannotWorkAreUsageErrors) {
