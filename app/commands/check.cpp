@@ -84,10 +84,10 @@ std::string own_need(const Task& input, CheckOptions judged) {
 std::vector<AnswerPart> need_parts(const ActuatorNeed& need, const std::string& profile) {
   const std::string weak =
       "  profile " + profile + " is too weak: the motion needs more than its motors give";
-  const std::string enough = need.sufficient.empty()
-                                 ? "no other profile is strong enough"
-                                 : "strong enough: " + text::join(need.sufficient, ", ");
-  return {{Worth::remark, {"  " + need.text + "\n", weak + "; " + enough + "\n", weak + "\n"}}};
+  const std::string enough = need.sufficient.empty() ? "No other profile is strong enough"
+                                                     : "Profiles that are strong enough: " +
+                                                           text::join(need.sufficient, ", ");
+  return {{Worth::remark, {"  " + need.text + "\n", weak + ". " + enough + "\n", weak + "\n"}}};
 }
 
 // The reasons for which `export` refuses the pattern, without the findings.
