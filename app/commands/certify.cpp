@@ -244,7 +244,7 @@ Json compare_with(Context& context, const CertifyCommand& options, const Study& 
   context.print("  failure probability with " + quoted(own) + " minus failure probability with " +
                 quoted(name) + ": " + in_percent(c.difference.low) + " to " +
                 in_percent(c.difference.high) + " with " + in_percent(pairs.confidence) +
-                " confidence; McNemar's exact test gives p = " + text::brief(c.p_value, 3) + "\n");
+                " confidence. McNemar's exact test gives p = " + text::brief(c.p_value, 3) + "\n");
   return {{"with", name},
           {"pairs", c.pairs},
           {"both_failed", c.both},
@@ -271,7 +271,7 @@ Json rare_failures(Context& context, const CertifyCommand& options, const Uncert
                   ", between about " + text::brief(r.interval.low, 2) + " and " +
                   text::brief(r.interval.high, 2) + " (subset simulation, " +
                   text::counted(r.levels.size(), "level") + ", " + text::counted(r.runs, "run") +
-                  "; the interval is approximate)\n");
+                  "). This interval is approximate\n");
   else
     context.print("  rare failures: none found in " + text::counted(r.levels.size(), "level") +
                   ". The probability is about " + text::brief(r.probability, 2) + " or less\n");

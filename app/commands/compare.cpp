@@ -123,19 +123,20 @@ std::string comparison_words(const Comparison& found, const Recordings& recordin
     words += curve_words(load, 1, load.unit.empty() ? "" : " " + load.unit);
   if (!found.loads.empty()) {
     words += "landings: " + std::to_string(found.landings.size()) +
-             " are both in the run and in the recording, with times that differ by at most " +
-             text::fixed(1000 * largest_landing(found), 0) + " ms; " +
+             " are in both the run and the recording, and their times differ by at most " +
+             text::fixed(1000 * largest_landing(found), 0) + " ms. " +
              std::to_string(found.lone_landings.size()) +
-             (found.lone_landings.size() == 1 ? " is" : " are") + " in only one of the two\n";
+             (found.lone_landings.size() == 1 ? " is" : " are") +
+             " only in the run or only in the recording\n";
     for (const ComparedLanding& landing : found.landings) {
       const double later = landing.measured - landing.simulated;
-      words += std::string("  ") + name_of(landing.foot) + " at " +
+      words += std::string("  ") + name_of(landing.foot) + " foot at " +
                text::fixed(landing.simulated, 3) + " s of the run, " +
                text::fixed(1000 * std::abs(later), 0) + (later < 0 ? " ms earlier" : " ms later") +
                " in the recording\n";
     }
     for (const LoneLanding& landing : found.lone_landings)
-      words += std::string("  ") + name_of(landing.foot) + " at " + text::fixed(landing.t, 3) +
+      words += std::string("  ") + name_of(landing.foot) + " foot at " + text::fixed(landing.t, 3) +
                " s of the run, only in the " + (landing.measured ? "recording" : "run") + "\n";
   }
   if (!found.imu.empty()) words += "differences of the IMU:\n";

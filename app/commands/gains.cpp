@@ -59,7 +59,7 @@ std::string mode_text(const Complex& pole) {
   std::string line = std::string(pole.real() < 0 ? "  decays" : "  grows") +
                      " with the time constant " + text::brief(std::abs(1 / pole.real())) + " s";
   if (std::abs(pole.imag()) > 1e-6)
-    line += ", oscillates at " + text::fixed(std::abs(pole.imag()) / (2 * M_PI), 2) + " Hz";
+    line += " and oscillates at " + text::fixed(std::abs(pole.imag()) / (2 * M_PI), 2) + " Hz";
   return line + "\n";
 }
 
@@ -90,7 +90,7 @@ std::string report(const RobotModel& model, const GainStudy& d) {
          "for the time of a step. The loop stays stable " +
          (d.largest_ka >= GainStudy::kMostKa ? "for ka beyond " + text::brief(GainStudy::kMostKa)
                                              : "for ka up to " + text::fixed(d.largest_ka, 2)) +
-         ". The slowest modes of an error (" + name_of(weakest) + "):\n";
+         ". These are the slowest modes of an error (" + name_of(weakest) + "):\n";
   int shown = 0;
   for (const Complex& pole : d.weakest.analysis.poles)
     if (pole.imag() >= 0 && -pole.real() > kShown * w && shown++ < 4) out += mode_text(pole);

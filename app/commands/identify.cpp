@@ -49,8 +49,9 @@ std::string joint_words(const IdentifiedJoint& j) {
     words += ", kp " + estimate_words(j.kp, 1, 0, "N m/rad");
   else if (j.kp.lower > 0)
     words += ", kp above " + text::brief(j.kp.lower, 3) + " N m/rad";
-  if (j.damping.known) words += ", kd + viscous " + estimate_words(j.damping, 1, 2, "N m s/rad");
-  if (j.coulomb.known) words += ", Coulomb " + estimate_words(j.coulomb, 1, 3, "N m");
+  if (j.damping.known)
+    words += ", kd + viscous friction " + estimate_words(j.damping, 1, 2, "N m s/rad");
+  if (j.coulomb.known) words += ", Coulomb friction " + estimate_words(j.coulomb, 1, 3, "N m");
   if (j.backlash.value > 0)
     words += ", backlash " + estimate_words(j.backlash, kIdentifiedDegree, 3, "deg");
   words += ", offset from the command " + estimate_words(j.offset, kIdentifiedDegree, 3, "deg");
@@ -159,7 +160,7 @@ void identify_servos(const Context& context, const IdentifyCommand& options) {
     if (std::any_of(found.joints.begin(), found.joints.end(),
                     [](const IdentifiedJoint& joint) { return joint.delay_is_lag; }))
       words +=
-          "  for joints whose delay and damping cannot be distinguished, the whole delay is "
+          "  if the delay and the damping of a joint cannot be distinguished, the whole delay is "
           "written as damping: kd = kp times delay\n";
   }
   context.print(words);

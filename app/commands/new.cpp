@@ -318,7 +318,7 @@ void new_walk(Context& context, NewOptions options) {
   } catch (const Error& error) {
     const std::string fits = error.code() == ErrorCode::bad_pattern ? what_fits(model, w) : "";
     if (error.code() != ErrorCode::bad_pattern) throw;
-    throw_with_more(error, fits.empty() ? what_it_can_do(model, options.file.robot) : "; " + fits);
+    throw_with_more(error, fits.empty() ? what_it_can_do(model, options.file.robot) : ". " + fits);
   }
   const std::string fits = what_fits(model, w);
   if (!fits.empty()) context.print("  " + fits + "\n");
