@@ -50,8 +50,9 @@ void bind_import(py::module_& m) {
             write_imported(path, written);
           },
           py::arg("path"),
-          "Writes the pattern, its table beside it, and, for formats whose files can be exported "
-          "unchanged, a copy of the file; all of them or none.");
+          "Writes the pattern and its table. For formats whose files can be exported unchanged, it "
+          "also "
+          "writes a copy of the file. It writes all of these files, or none.");
   m.def("motion_formats", &read_format_names, "Names of the formats that import_motion() reads.");
   m.def(
       "import_motion",

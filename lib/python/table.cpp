@@ -141,7 +141,8 @@ void bind_table(py::module_& m) {
       py::arg("ramp") = SafetyOptions().ramp, py::arg("hold") = SafetyOptions().hold,
       py::arg("start") = SafetyOptions().from,
       "Adds an approach of `ramp` s from the posture `start` before a table and a hold of `hold` s "
-      "after it, and judges what the servos would receive; with a log, also the torques of that "
+      "after it, and judges what the servos would receive. With a log, it also judges the torques "
+      "of that "
       "run.");
 }
 
