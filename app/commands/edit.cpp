@@ -607,8 +607,8 @@ void edit_key(Context& context, const EditCommand& options) {
   if (options.key_by != 0) key.to = key.at + options.key_by;
   if (!key.to && !key.mirror)
     fail(ErrorCode::usage,
-         "edit key: no change of the keyframe is given. Move the keyframe with --to T or --by S, "
-         "move a copy of it with --copy, or exchange left and right with --mirror");
+         "edit key: no change of the keyframe is given. Move the keyframe with --to T or --by S. "
+         "Add --copy to move a copy of the keyframe. --mirror exchanges left and right");
   if (key.copy && !key.to)
     fail(ErrorCode::usage, "edit key: --copy needs the time of the copy. Give --to T or --by S");
   const Given given = load(context, options);

@@ -597,8 +597,8 @@ void new_viip(Context& context, const NewOptions& options) {
   const bool steps = options.viip_steps > 0;
   if (steps + !options.cog.empty() + !options.cog_velocity.empty() != 1)
     fail(ErrorCode::usage,
-         "viip: give exactly one of --cog DX,DY,DZ, --cog-velocity VX,VY,VZ and --steps N. "
-         "--velocity and --turn can be added to --steps, and --duration to --cog-velocity");
+         "viip: give exactly one of --cog DX,DY,DZ, --cog-velocity VX,VY,VZ and --steps N. You can "
+         "add --velocity and --turn to --steps, and --duration to --cog-velocity");
   if (!steps && (!options.velocity.empty() || options.turn_deg != 0))
     fail(ErrorCode::usage,
          "viip: --velocity and --turn work only together with --steps N. Add --steps");

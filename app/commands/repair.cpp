@@ -531,10 +531,10 @@ void add_repair(Command& app, Context& context) {
       ->type_name("JOINT=FACTOR")
       ->allow_extra_args(false);
   command
-      ->add_option(
-          "--trust", options.trust,
-          "Quantity that is kept where posture, COG and ZMP disagree. The other two are adapted to "
-          "this quantity (default: the choice in the pattern; posture if the pattern has none).")
+      ->add_option("--trust", options.trust,
+                   "Quantity that is kept where posture, COG and ZMP disagree. The repair adapts "
+                   "the other two quantities to this quantity (default: the choice in the pattern; "
+                   "posture if the pattern has none).")
       ->check(one_of({"posture", "cog", "zmp"}))
       ->type_name("QUANTITY");
   command->add_flag("--baked", options.baked,
@@ -555,7 +555,8 @@ void add_repair(Command& app, Context& context) {
       ->add_option(
           "--margin", options.margin,
           "Wanted distance from the ZMP to the edge of the support [m]. Where the original motion "
-          "has a smaller distance, the repair tries to reach the wanted one (default: 0.9 x the "
+          "has a smaller distance, the repair tries to reach the wanted distance (default: 0.9 x "
+          "the "
           "radius of the largest circle inside the sole).")
       ->check(number_within(RepairOptions::kZmpMargin))
       ->type_name("M");
