@@ -70,14 +70,14 @@ std::string add_case_results(const std::filesystem::path& file, const Json& stud
   // A file to be merged must exist; any other one is the file of -o.
   const std::string remedy =
       must_exist
-          ? "leave this file out of --merge, or run the shard of this file again with --force"
-          : "choose another name, or replace the file with --force";
+          ? "Leave this file out of --merge, or run the shard of this file again with --force"
+          : "Choose another name, or replace the file with --force";
   const std::string bytes = read_file(file);
   try {
     const auto json = shallow_json<nlohmann::json>(bytes);
     if (json.at("format") != kCertifyFormat)
       refuse("this file does not contain results of ayumi certify");
-    if (const std::string wrong = wrong_seal(bytes); !wrong.empty()) refuse(wrong + "; " + remedy);
+    if (const std::string wrong = wrong_seal(bytes); !wrong.empty()) refuse(wrong + ". " + remedy);
     // The order of the keys does not matter.
     const auto& theirs = json.at("study");
     const auto ours = nlohmann::json::parse(study.dump());
@@ -85,33 +85,33 @@ std::string add_case_results(const std::filesystem::path& file, const Json& stud
       std::string key;
       for (const auto& [name, value] : ours.items())
         if (key.empty() && (!theirs.contains(name) || theirs.at(name) != value)) key = name;
-      refuse("this file contains the results of another study ('" + key + "' differs); " + remedy);
+      refuse("this file contains the results of another study ('" + key + "' differs). " + remedy);
     }
     shard = json.value("shard", "");
     for (const auto& row : json.at("cases")) {
-      if (!row.at(0).is_number_unsigned()) refuse("a case has no number; " + remedy);
+      if (!row.at(0).is_number_unsigned()) refuse("a case has no number. " + remedy);
       const size_t number = row.at(0);
       if (number >= kMostCases)
-        refuse("the number " + std::to_string(number) + " of a case is too large; the largest is " +
+        refuse("the number " + std::to_string(number) + " of a case is too large. The largest is " +
                std::to_string(kMostCases - 1));
       const CaseResult result = case_of(nlohmann::json(row.begin() + 1, row.end()));
       for (const double figure :
            {result.fell_at, result.cog_error, result.torque, result.foot_tilt})
         if (!(std::abs(figure) <= kLargestNumber))
           refuse("case " + std::to_string(number) + " has the value " + text::brief(figure) +
-                 ", which no simulation gives; " + remedy);
+                 ", which no simulation gives. " + remedy);
       const auto [known, is_new] = cases.emplace(number, result);
       if (!is_new && !(known->second == result))
         refuse("the result of case " + std::to_string(number) +
-               " differs from the result in another file of the same study; run the study again "
+               " differs from the result in another file of the same study. Run the study again "
                "with --force");
     }
   } catch (const Json::exception&) {
     refuse(
-        "this file does not contain results of ayumi certify, or a part of the file is missing; " +
+        "this file does not contain results of ayumi certify, or a part of the file is missing. " +
         remedy);
   } catch (const std::out_of_range&) {
-    refuse("this file has an outcome that this version of Ayumi does not know; " + remedy);
+    refuse("this file has an outcome that this version of Ayumi does not know. " + remedy);
   }
   return shard;
 }

@@ -198,7 +198,7 @@ std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
              text::suggestion(word.substr(0, word.find('=')), option_names(level));
     if (&level == &app) return "unknown command '" + word + "'" + subcommand_suggestion(app, word);
     if (!kinds_of(level).empty())
-      return level.get_name() + ": unknown kind '" + word + "'; choose one of " +
+      return level.get_name() + ": unknown kind '" + word + "'. Choose one of " +
              text::join(kinds_of(level), ", ") + text::suggestion(word, kinds_of(level));
     return "unexpected argument '" + word + "'";
   }
@@ -245,7 +245,7 @@ int parse_and_run(CLI::App& app, Context& context, int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return failed(
         context,
-        "there is not enough memory for this command; take a shorter motion, fewer samples or "
+        "there is not enough memory for this command. Take a shorter motion, fewer samples or "
         "a machine with more memory",
         exit_code_of(ErrorCode::bad_file));
   } catch (const fs::filesystem_error& error) {
@@ -255,7 +255,7 @@ int parse_and_run(CLI::App& app, Context& context, int argc, char** argv) {
     return failed(context,
                   std::string("the system refused a thread or another resource (") +
                       error.code().message() +
-                      "); end other programs, or raise the limits of the system (ulimit)",
+                      "). End other programs, or raise the limits of the system (ulimit)",
                   exit_code_of(ErrorCode::bad_file));
   } catch (const std::exception& error) {
     return failed(context, std::string("internal error: ") + error.what(), 5);
@@ -322,8 +322,8 @@ void refuse_words(int argc, char** argv) {
     if (!is_utf8(word))
       fail(ErrorCode::usage, {"", place},
            "'" + word +
-               "' is not UTF-8 text, so Ayumi cannot write it into results; "
-               "give UTF-8 text (if this is the name of a file, rename the file)");
+               "' is not UTF-8 text, so Ayumi cannot write it into results. "
+               "Give UTF-8 text (if this is the name of a file, rename the file)");
   }
 }
 

@@ -84,9 +84,9 @@ const char* stage_words(LawStage stage) {
     case LawStage::weight_shift:
       return "VIIP shifts the weight before its first step";
     case LawStage::single_support:
-      return "VIIP makes steps; the robot stands on one foot";
+      return "VIIP makes steps, and the robot stands on one foot";
     case LawStage::double_support:
-      return "VIIP makes steps; the robot stands on both feet";
+      return "VIIP makes steps, and the robot stands on both feet";
     case LawStage::stoop:
       return "VIIP stoops for a jump, by (24)(25)";
     case LawStage::push:
@@ -109,7 +109,7 @@ Writer begin(const RunInstant& i) {
   Writer w(i);
   if (baseline(i))
     w.line("the controller " + name_of(*i.log.controller) +
-           " chooses the ZMP in place of (18)(19); everything else is as in DTAD");
+           " chooses the ZMP in place of (18)(19). Everything else is as in DTAD");
   w.line(stage_words(i.now().law.stage));
   w.scalar("law.stage", "1", static_cast<double>(i.now().law.stage));
   return w;
@@ -142,7 +142,7 @@ void acceleration_lines(Writer& w, const RunInstant& i, int a) {
           : plan                ? "command "
                                 : "measured state ") +
          fixed(w.part("law.pull", "m/s^2", law.pull, a), 3) + ", damping of the rocking " +
-         fixed(w.part("law.rocking", "m/s^2", law.rocking, a), 3) + "; together " +
+         fixed(w.part("law.rocking", "m/s^2", law.rocking, a), 3) + ", sum of these terms " +
          acceleration(sum));
   const double asked = w.part("ref.ddcog", "m/s^2", s.reference_ddcog, a);
   if (std::abs(asked - sum) > 1e-9)
@@ -161,7 +161,7 @@ EquationNumbers pendulum_numbers(const RunInstant& i) {
     const double real = w.part("law.filtered_zmp", "m", law.filtered_zmp, a);
     w.line(std::string(1, kAxis[a]) + ": required acceleration " + fixed(w2, 1) + " /s2 x (" +
            mm(x) + " - " + mm(wanted) + ") = " + acceleration(w2 * (x - wanted)) +
-           "; the ground gives " + fixed(w2, 1) + " x (" + mm(x) + " - " + mm(real) +
+           ". The ground gives " + fixed(w2, 1) + " x (" + mm(x) + " - " + mm(real) +
            ") = " + acceleration(w2 * (x - real)));
     if (literal(i)) {
       w.part("law.motion", "m/s^2", law.motion, a, w2 * (x - wanted));
@@ -177,7 +177,7 @@ EquationNumbers pendulum_numbers(const RunInstant& i) {
       const double gap = law.short_term[a] / (ka * w2);
       w.line("   short term: ka = " + text::brief(ka) + " times w2 x (ZMP - ref ZMP" +
              (offset != 0 ? " - offset " + mm(offset) : std::string()) +
-             "); the value in parentheses is " + mm(gap));
+             "). The value in parentheses is " + mm(gap));
     }
     acceleration_lines(w, i, a);
   }
@@ -190,7 +190,7 @@ EquationNumbers vertical_numbers(const RunInstant& i) {
   const double wanted = w.scalar("ref.fz", "N", s.reference_fz),
                measured = w.scalar("measured.fz", "N", s.measured_fz);
   w.line("z: ref f_z / m - g = " + fixed(wanted, 1) + " N / " + fixed(i.mass, 2) +
-         " kg - g = " + acceleration(wanted / i.mass - kGravity) + "; the measured f_z " +
+         " kg - g = " + acceleration(wanted / i.mass - kGravity) + ". The measured f_z " +
          fixed(measured, 1) + " N gives " + acceleration(measured / i.mass - kGravity));
   if (on_ground(s.law.stage)) acceleration_lines(w, i, 2);
   return w.take();
@@ -217,7 +217,7 @@ EquationNumbers zmp_numbers(const RunInstant& i) {
   const S& s = w.now();
   const LawTerms& law = s.law;
   if (!on_ground(law.stage)) {
-    w.line("(18)(19) are not used in flight or in open loop; the reference ZMP is the planned ZMP");
+    w.line("(18)(19) are not used in flight or in open loop. The reference ZMP is the planned ZMP");
     return w.take();
   }
   const double K = w.scalar("law.K", "1", law.K), D = w.scalar("law.D", "s", law.D);
@@ -225,7 +225,7 @@ EquationNumbers zmp_numbers(const RunInstant& i) {
                             " times the error of the COG. This error is the measured COG minus the "
                             "previewed COG, plus " +
                             fixed(1e3 * D / K, 0) + " ms times the difference of their speeds"
-         : baseline(i) ? "the wanted ZMP is the planned one plus " + fixed(K, 3) +
+         : baseline(i) ? "the wanted ZMP is the planned ZMP plus " + fixed(K, 3) +
                              " times the error of the DCM. The DCM is the COG plus " +
                              fixed(1e3 * D / K, 0) + " ms times its speed"
          : dtad(i) ? "K = " + text::brief(K) + ", D = " + fixed(1e3 * D, 0) + " ms"
@@ -374,7 +374,7 @@ EquationNumbers resolution_numbers(const RunInstant& i) {
   w.line("ref COG rate " + fixed(1e3 * w.part("ref.dcog", "m/s", s.reference_dcog, 0), 1) + ", " +
          fixed(1e3 * w.part("ref.dcog", "m/s", s.reference_dcog, 1), 1) + ", " +
          fixed(1e3 * w.part("ref.dcog", "m/s", s.reference_dcog, 2), 1) + " mm/s is produced by " +
-         std::to_string(rates.size()) + " joints together; the fastest joints:");
+         std::to_string(rates.size()) + " joints together. The fastest joints:");
   w.line("  " + joints);
   const TaskResiduals& left = s.residuals;
   w.line("part of u that J_U ref dtheta does not produce: COG " +
@@ -459,7 +459,7 @@ const std::vector<Equation>& equations() {
     add(14, "ddx_G = w2 (x_G - x_Z)", kPendulum, pendulum_numbers);
     add(15, "ddy_G = w2 (y_G - y_Z)", kPendulum, pendulum_numbers);
     add(16, "ddz_G = f_z / m - g",
-        "The vertical ground force carries the weight; the difference between the two accelerates "
+        "The vertical ground force carries the weight. The difference between the two accelerates "
         "the COG.",
         vertical_numbers);
     add(17, "w2 = f_z / (m (z_G - z_Z))",

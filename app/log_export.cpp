@@ -35,7 +35,7 @@ void require_options(const LogExport& options, const Command& command) {
     if (option.count() > 0 && std::find(known.begin(), known.end(), shown) == known.end())
       fail(ErrorCode::usage,
            shown + ": this option is for joint tables only, but --format " + options.format +
-               " writes the log of a run; leave this option out, or choose the format "
+               " writes the log of a run. Leave this option out, or choose the format "
                "of a table (csv, json, hoap)");
   }
   if (fs::path(options.output).extension() != extension_of(options.format))
@@ -50,11 +50,11 @@ SimulationLog log_of(const LogExport& options) {
       fail(ErrorCode::bad_file, {options.input},
            "--format " + options.format +
                " needs a RUN, the folder that `ayumi run` or `ayumi simulate` "
-               "wrote, or a log file from this folder; give one of these");
+               "wrote, or a log file from this folder. Give one of these");
     if (!options.log.empty())
       fail(ErrorCode::usage, "--log " + options.log + ": " + options.input +
                                  " is a single log, and --log chooses one of the logs of a RUN "
-                                 "folder; leave --log out");
+                                 "folder. Leave --log out");
   }
   return read_run_log(options.input, options.log);
 }
@@ -150,7 +150,7 @@ void refuse_log_file(const std::string& input) {
     fail(ErrorCode::bad_file,
          input +
              ": this is a single log, but a joint table is made from the "
-             "whole run; name the RUN folder, or write the log with --format " +
+             "whole run. Name the RUN folder, or write the log with --format " +
              text::join(log_formats(), " or "));
 }
 

@@ -53,7 +53,7 @@ ValueCheck seed_number() {
       return "'" + word + "' is not a whole number from 0 to " + std::to_string(UINT64_MAX);
     // The option itself would read such a number as an octal one.
     return word.size() > 1 && word[0] == '0'
-               ? "'" + word + "' begins with 0; write " + std::to_string(value)
+               ? "'" + word + "' begins with 0. Write " + std::to_string(value)
                : "";
   };
   return {complaint, ""};
@@ -73,7 +73,7 @@ ValueCheck file_or_subcommand(const std::vector<std::string>& subcommands) {
     std::error_code ignored;
     if (word.find_first_of("./") != std::string::npos || std::filesystem::exists(word, ignored))
       return "";
-    return "'" + word + "' is neither a file nor a subcommand; the subcommands are " +
+    return "'" + word + "' is neither a file nor a subcommand. The subcommands are " +
            text::join(subcommands, ", ") + text::suggestion(word, subcommands);
   };
   return {complaint, ""};

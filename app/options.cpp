@@ -93,7 +93,7 @@ bool names_option(const CLI::App* command, const std::string& word) {
 
 // Says that a result is not written to the standard output.
 std::string complaint_of_dash(const std::string& word) {
-  return word != "-" ? "" : "results are written to files only; for a file named '-', write ./-";
+  return word != "-" ? "" : "results are written to files only. For a file named '-', write ./-";
 }
 
 }  // namespace
@@ -107,7 +107,7 @@ Option* Command::keep_value(CLI::Option* option, bool is_output) {
         if (!is_option && !(is_output && word.starts_with("--"))) return "";
         return (is_option ? "'" + word + "' is an option, but a value is needed"
                           : "'" + word + "' looks like an option") +
-               std::string(is_output ? "; for a file of this name, write ./" + word : "");
+               std::string(is_output ? ". For a file of this name, write ./" + word : "");
       },
       "", ""));
   return keep(option);

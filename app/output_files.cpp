@@ -18,7 +18,7 @@ void refuse_same_files(const std::vector<std::pair<std::string, std::string>>& f
     const auto [first, fresh] = taken.emplace(place, option);
     if (!fresh)
       fail(ErrorCode::usage, first->second + " and " + option + " name the same file, " + file +
-                                 "; give a different file to each option");
+                                 ". Give a different file to each option");
   }
 }
 

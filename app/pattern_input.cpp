@@ -54,10 +54,10 @@ std::map<std::string, double> read_pairs(const std::vector<std::string>& words,
     if (cannot_hold)
       fail(ErrorCode::usage,
            option + ": the number of '" + word +
-               "' is too large or too near to 0; give 0, or a number from -1e6 to 1e6");
+               "' is too large or too near to 0. Give 0, or a number from -1e6 to 1e6");
     if (!(std::abs(value) <= kLargestNumber))
       fail(ErrorCode::usage,
-           option + ": '" + word + "' is out of range; the number must be from -1e6 to 1e6");
+           option + ": '" + word + "' is out of range. The number must be from -1e6 to 1e6");
     pairs[word.substr(0, equals)] = value;
   }
   return pairs;
@@ -71,7 +71,7 @@ std::string read_input(const std::filesystem::path& file, size_t most) {
     bytes.append(block.data(), static_cast<size_t>(std::cin.gcount()));
     if (bytes.size() > most)
       fail(ErrorCode::bad_file, "standard input: more than " + std::to_string(most) +
-                                    " bytes came; an input of this kind may have at most " +
+                                    " bytes came. An input of this kind may have at most " +
                                     std::to_string(most));
   }
   return bytes;

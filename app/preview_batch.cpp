@@ -36,7 +36,7 @@ std::vector<fs::path> targets_of(const PreviewBatch& batch) {
     if (std::find(targets.begin(), targets.end(), target) != targets.end())
       fail(ErrorCode::usage, {input},
            "another run has the same name, so both clips would be written to " + target.string() +
-               "; run the command once for each of these runs");
+               ". Run the command once for each of these runs");
     targets.push_back(target);
   }
   return targets;

@@ -145,7 +145,7 @@ KnownCases read_results(const std::filesystem::path& file, const Json& study, si
   if (!std::filesystem::exists(file)) return known;
   const auto refuse = [&](const std::string& why) {
     fail(ErrorCode::bad_file, {file.string()},
-         why + "; choose another name, or replace the file with --force");
+         why + ". Choose another name, or replace the file with --force");
   };
   const std::string bytes = read_file(file);
   try {

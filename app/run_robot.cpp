@@ -27,7 +27,7 @@ void require_log_of(const RobotModel& model, const std::string& chosen, const Si
   if (!made_with.empty() && made_with != model.description().sha256)
     fail(ErrorCode::bad_file, {source},
          "the robot '" + model.name() +
-             "' has changed since the run was made; make the run again, or give --robot to use the "
+             "' has changed since the run was made. Make the run again, or give --robot to use the "
              "present robot");
   require_robot_of(model, log, source);
 }

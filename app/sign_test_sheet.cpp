@@ -148,7 +148,7 @@ Image sign_test_picture(const RobotModel& model, const SignTest& test) {
             {.size = 16, .plate = {1, 1, 1, 0.8F}});
   draw_text(image, 16, 616,
             "seen from: " + std::string(view.words) +
-                (view.motion.empty() ? "" : "; the joint turns " + view.motion),
+                (view.motion.empty() ? "" : ". The joint turns " + view.motion),
             {.size = 14, .plate = {1, 1, 1, 0.8F}});
   return image;
 }

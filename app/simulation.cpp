@@ -74,7 +74,7 @@ void note_missing_noise(const RobotModel& robot, bool noise) {
   std::fprintf(
       stderr,
       "ayumi: --noise changes nothing, because the files of %s state no noise, bias or latency of "
-      "sensors; state these under \"sensors\" in the sidecar of the robot (`ayumi init` "
+      "sensors. State these under \"sensors\" in the sidecar of the robot (`ayumi init` "
       "writes a first guess)\n",
       text::printable(robot.name()).c_str());
 }
@@ -87,7 +87,7 @@ ControllerSpec chosen_controller(const Task& input, const SimulationChoice& choi
   }
   if (spec.type == ControllerKind::none && !choice.gains.empty())
     fail(ErrorCode::usage,
-         "--gain: the controller is 'none' (open loop), which has no gains; leave --gain out, or "
+         "--gain: the controller is 'none' (open loop), which has no gains. Leave --gain out, or "
          "choose dtad or viip with --controller");
   for (const auto& [name, value] : read_pairs(choice.gains, "--gain"))
     spec.gains.emplace_back(name, value);

@@ -36,7 +36,7 @@ void require_readable_log(const Task& input, const std::vector<std::string>& joi
   fail(ErrorCode::bad_pattern,
        input.pattern.name + ": the motion lasts " + text::fixed(input.series.duration(), 1) +
            " s, and the log of this robot can hold " + text::fixed(longest, 1) +
-           " s; divide the motion, or use ayumi simulate without -o, which keeps no log");
+           " s. Divide the motion, or use ayumi simulate without -o, which keeps no log");
 }
 
 Eigen::MatrixXd matrix_of(const std::vector<double>& rows, size_t columns) {

@@ -11,7 +11,7 @@ Study load_study(const Task& input, const std::string& file) {
     Study study = read_study(file);
     if (study.uncertainty.empty())
       fail(ErrorCode::bad_pattern, {file},
-           "the study has no uncertainty; add \"uncertainty\" to it");
+           "the study has no uncertainty. Add \"uncertainty\" to it");
     return study;
   }
   if (!input.pattern.uncertainty.empty())
@@ -37,7 +37,7 @@ std::string fit_to_plant(Study& study, const std::string& plant, bool stated) {
     if (stated)
       fail(ErrorCode::bad_pattern, q.place,
            "this quantity has no effect, because with --plant mujoco the soles have the "
-           "stiffness and the damping of MuJoCo's contacts; remove the quantity");
+           "stiffness and the damping of MuJoCo's contacts. Remove the quantity");
     names.push_back(q.name);
   }
   std::erase_if(all, unused);

@@ -73,7 +73,8 @@ AuthorResult check_job(const AuthorMotion& motion, const Progress& progress) {
   const std::string& need = judgement.need().text;
   if (!need.empty()) lines.push_back(need);
   for (const std::string& reason : export_refusals(task, judgement))
-    if (reason != judgement.reason()) lines.push_back("ayumi export refuses the table: " + reason);
+    if (reason != judgement.reason())
+      lines.push_back("`ayumi export` would refuse the table of this pattern: " + reason);
   lines.push_back(counted_findings(judgement) + ", actuators " + task.profile);
   lines.push_back("Share of the limits: " + shares_of_limits(judgement.report, task.robot));
   for (const Mistake& mistake : mistakes)
@@ -89,10 +90,19 @@ AuthorResult repair_job(const AuthorMotion& motion, const std::string& text,
   RepairOptions options = preferred_options(task.pattern);
   options.check = check_options(task);
   const RepairResult result = repair_task(task, options, progress);
-  if (result.status == RepairStatus::already_consistent)
-    return {result_json("repair", "The pattern is consistent, so nothing has to change.", true,
-                        OrderedJson::array()),
-            {}};
+  if (result.status == RepairStatus::already_consistent) {
+    const std::string& goals = motion.judgement.goal_need.text;
+    if (goals.empty())
+      return {result_json("repair", "The pattern is consistent, so nothing has to change.", true,
+                          OrderedJson::array()),
+              {}};
+    return {
+        result_json("repair",
+                    "The motion is consistent, but a goal is not possible. Repair cannot change "
+                    "goals of VIIP.",
+                    false, OrderedJson::array({goals})),
+        {}};
+  }
   const bool repaired = result.status == RepairStatus::repaired;
   OrderedJson lines =
       json_lines_of(motion_words(task.robot, result.moved, result.before, result.check));
@@ -211,8 +221,9 @@ AuthorResult push_job(const Context& context, const AuthorMotion& motion,
   const std::string verdict =
       weakest ? "The robot survives " + text::fixed(least, 2) +
                     " N s at every time and in every direction. The smallest push limit is at " +
-                    text::fixed(weakest->phase.at, 2) + " s, for a push towards " +
-                    text::fixed(weakest->direction * 180 / M_PI, 0) + " degrees."
+                    text::fixed(weakest->phase.at, 2) + " s, for a push in the direction of " +
+                    text::fixed(weakest->direction * 180 / M_PI, 0) +
+                    " degrees (0 is forward, 90 is to the left)."
               : "There was no push to try.";
   AuthorResult out = {result_json("push", verdict, weakest && least > 0, lines), {}};
   out.shown["marks"] = marks;
@@ -231,7 +242,7 @@ Said run_command(const std::vector<std::string>& arguments, const fs::path& fold
   std::array<int, 2> out{}, err{};
   if (::pipe(out.data()) != 0 || ::pipe(err.data()) != 0)
     fail(ErrorCode::bad_file,
-         "the export cannot be started, because the system allows no more pipes; close other "
+         "the export cannot be started, because the system allows no more pipes. Close other "
          "programs and try again");
   std::vector<char*> words;
   for (const std::string& word : arguments) words.push_back(const_cast<char*>(word.c_str()));
@@ -240,7 +251,7 @@ Said run_command(const std::vector<std::string>& arguments, const fs::path& fold
   const pid_t child = ::fork();
   if (child < 0)
     fail(ErrorCode::bad_file,
-         "the export cannot be started, because the system allows no more processes; close other "
+         "the export cannot be started, because the system allows no more processes. Close other "
          "programs and try again");
   if (child == 0) {
     ::dup2(out[1], STDOUT_FILENO);

@@ -113,7 +113,7 @@ class KeyEdits {
       fail(ErrorCode::usage,
            "at " + text::exact(t) +
                " s the keyframes come from a repeated block, so no new keyframe "
-               "can be written there; choose the time of a keyframe of the block, "
+               "can be written there. Choose the time of a keyframe of the block, "
                "or replace the block by single keyframes");
     return outermost(next);
   }

@@ -43,7 +43,7 @@ void serve_author(AuthorSession& session, const ServerOptions& options,
   if (!bound)
     fail(ErrorCode::bad_file, options.port > 0
                                   ? "port " + std::to_string(options.port) +
-                                        " is taken; choose another --port, or leave --port out"
+                                        " is taken. Choose another --port, or leave --port out"
                                   : std::string("no port is free on the loopback address"));
   const std::string token = secret();
   AuthorRequests requests(session, token, port);

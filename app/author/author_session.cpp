@@ -407,13 +407,13 @@ AuthorAnswer AuthorSession::step(const OrderedJson& request, int by) {
     const bool possible = by < 0 ? history_.undo_steps() > 0 : history_.redo_steps() > 0;
     if (request.at("hash") != shown->hash || !possible)
       return refused(
-          possible ? "the file has changed in the meantime; look at the new text, then try again"
+          possible ? "the file has changed in the meantime. Look at the new text, then try again"
           : by < 0 ? "there is nothing to undo"
                    : "there is nothing to redo");
     const std::string text = history_.near(by);
     if (!replace_text(setting_.file, shown->text, text)) {
       refresh();
-      return refused("the file has changed in the meantime; look at the new text, then try again");
+      return refused("the file has changed in the meantime. Look at the new text, then try again");
     }
     history_.step(by);
     refresh();
@@ -443,7 +443,7 @@ AuthorAnswer AuthorSession::pose(const OrderedJson& request) {
   return answered(setting_.file, [&]() -> AuthorAnswer {
     const Shown shown = view();
     if (!shown->motion || shown->error)
-      return refused("the text of the pattern has an error; correct it first");
+      return refused("the text of the pattern has an error. Correct it first");
     PoseWish wish;
     wish.time = request.at("time");
     if (request.contains("joints"))
@@ -478,7 +478,7 @@ AuthorAnswer AuthorSession::posture(const OrderedJson& request) {
   return answered(setting_.file, [&]() -> AuthorAnswer {
     const Shown shown = view();
     if (!shown->motion || shown->error)
-      return refused("the text of the pattern has an error; correct it first");
+      return refused("the text of the pattern has an error. Correct it first");
     return {200,
             {{"edits",
               edits_json(captured(*shown->motion, request.at("time"), request.at("name"),
@@ -491,7 +491,7 @@ AuthorAnswer AuthorSession::mirror(const OrderedJson& request) {
   return answered(setting_.file, [&]() -> AuthorAnswer {
     const Shown shown = view();
     if (!shown->motion || shown->error)
-      return refused("the text of the pattern has an error; correct it first");
+      return refused("the text of the pattern has an error. Correct it first");
     const MirroredKeyframe mirrored =
         mirrored_keyframe(*shown->motion, shown->text, setting_, request.at("pointer"));
     OrderedJson answer = {{"edits", edits_json(mirrored.edits)}};
@@ -513,8 +513,8 @@ AuthorAnswer AuthorSession::start_job(const OrderedJson& request) {
       return refused("there is no job '" + kind + "'");
     const Shown shown = view();
     if (!shown->motion || shown->error)
-      return refused("the text of the pattern has an error; correct it first");
-    if (job_runs_) return refused("another job is running; wait for it or cancel it");
+      return refused("the text of the pattern has an error. Correct it first");
+    if (job_runs_) return refused("another job is running. Wait for it or cancel it");
     if (worker_.joinable()) worker_.join();
     job_stops_ = false;
     const std::uint64_t id = ++job_;
@@ -525,7 +525,7 @@ AuthorAnswer AuthorSession::start_job(const OrderedJson& request) {
                        shown] { work(id, kind, options, shown); });
     } catch (const std::system_error&) {  // too many threads run on this machine
       job_runs_ = false;
-      return refused("the job could not be started; close other programs and try again");
+      return refused("the job could not be started. Close other programs and try again");
     }
     return {200, {{"id", std::to_string(id)}}};
   });
@@ -575,7 +575,7 @@ void AuthorSession::work(std::uint64_t id, std::string kind, OrderedJson options
       publish(std::move(next));
     } else {
       news["error"] =
-          "the pattern has changed in the meantime; this answer belongs to the old pattern";
+          "the pattern has changed in the meantime. This answer belongs to the old pattern";
     }
   }
   news["progress"] = 1;

@@ -38,13 +38,13 @@ void author(Context& context, const AuthorCommand& options) {
          "apt-get install nodejs npm, then configure and build again (cmake -S . -B build/release "
          "&& cmake --build build/release)");
   if (options.pattern == "-")
-    fail(ErrorCode::usage, "author: standard input cannot be edited; name a file");
+    fail(ErrorCode::usage, "author: standard input cannot be edited. Name a file");
   // If the file is a link, its target is edited, and the link stays.
   std::error_code missing;
   std::filesystem::path file = std::filesystem::canonical(options.pattern, missing);
   if (missing && !std::filesystem::exists(options.pattern))
     fail(ErrorCode::bad_file, {options.pattern},
-         "no such file; `ayumi new stand -o " + options.pattern +
+         "no such file. `ayumi new stand -o " + options.pattern +
              "` writes a pattern to begin with, and `ayumi new --list` names "
              "other kinds of motion");
   if (missing) file = options.pattern;

@@ -90,14 +90,14 @@ void print_certificate(const Context& context, bool degrees, const Certificate& 
   std::string text = c.outcome.certified ? "certified: " : "not certified: ";
   text += counts_text(c);
   if (c.outcome.certified)
-    text += "; the robot fails with a probability of at most " + in_percent(c.upper) + ", with " +
+    text += ". The robot fails with a probability of at most " + in_percent(c.upper) + ", with " +
             confidence;
   else if (c.outcome.stopped)
-    text += "; a failure probability of " + in_percent(options.failure) +
+    text += ". A failure probability of " + in_percent(options.failure) +
             " or less can no longer be " + "shown within " +
             text::counted(most_cases(options), "run");
   else
-    text += "; more runs are needed";
+    text += ". More runs are needed";
   context.print(text + "\n");
   if (c.outcome.stopped)
     context.print("  failure probability: at least " + in_percent(c.lower) + " and at most " +
@@ -108,7 +108,7 @@ void print_certificate(const Context& context, bool degrees, const Certificate& 
     const auto failed = std::count_if(results.begin(), results.end(),
                                       [](const auto& r) { return r && r->failed(); });
     context.print("  all " + text::counted(done, "run") + ": " + std::to_string(failed) +
-                  " failed; the failure probability is at least " +
+                  " failed. The failure probability is at least " +
                   in_percent(lower_bound(failed, done, options.confidence)) + " and at most " +
                   in_percent(upper_bound(failed, done, options.confidence)) + ", each with " +
                   confidence + "\n");
@@ -215,7 +215,7 @@ Json compare_with(Context& context, const CertifyCommand& options, const Study& 
     fail(ErrorCode::bad_pattern,
          "--against: " + file + " is for the robot " + other.robot.name() + ", but " +
              options.pattern + " is for the robot " + input.robot.name() +
-             "; a comparison needs two patterns for the same robot, so give a pattern for " +
+             ". A comparison needs two patterns for the same robot, so give a pattern for " +
              input.robot.name());
   const SimulateOptions second_loop = simulation_options(context, other, choice);
   const UncertainTask second(other.robot, other.series, study.uncertainty, second_loop);
@@ -244,7 +244,7 @@ Json compare_with(Context& context, const CertifyCommand& options, const Study& 
   context.print("  failure probability with " + quoted(own) + " minus failure probability with " +
                 quoted(name) + ": " + in_percent(c.difference.low) + " to " +
                 in_percent(c.difference.high) + " with " + in_percent(pairs.confidence) +
-                " confidence; McNemar's exact test gives p = " + text::brief(c.p_value, 3) + "\n");
+                " confidence. McNemar's exact test gives p = " + text::brief(c.p_value, 3) + "\n");
   return {{"with", name},
           {"pairs", c.pairs},
           {"both_failed", c.both},
@@ -271,10 +271,10 @@ Json rare_failures(Context& context, const CertifyCommand& options, const Uncert
                   ", between about " + text::brief(r.interval.low, 2) + " and " +
                   text::brief(r.interval.high, 2) + " (subset simulation, " +
                   text::counted(r.levels.size(), "level") + ", " + text::counted(r.runs, "run") +
-                  "; the interval is approximate)\n");
+                  "). This interval is approximate\n");
   else
     context.print("  rare failures: none found in " + text::counted(r.levels.size(), "level") +
-                  "; the probability is about " + text::brief(r.probability, 2) + " or less\n");
+                  ". The probability is about " + text::brief(r.probability, 2) + " or less\n");
   return {{"probability", r.probability}, {"variation", r.variation}, {"low", r.interval.low},
           {"high", r.interval.high},      {"levels", r.levels},       {"runs", r.runs},
           {"reached", r.reached}};
@@ -293,7 +293,7 @@ void refuse_targets(const Context& context, const CertifyCommand& options) {
   refuse_same_files({{"--out", options.out}, {"--table", options.table}, {"--map", options.map}});
   if (options.certify.shards > 1 && options.out.empty())
     fail(ErrorCode::usage,
-         "--shard needs -o, the file that receives the results of this shard; --merge puts such "
+         "--shard needs -o, the file that receives the results of this shard. --merge puts such "
          "files together");
   if (options.rare && options.subset.runs % 10 != 0)
     fail(ErrorCode::usage,
@@ -301,7 +301,7 @@ void refuse_targets(const Context& context, const CertifyCommand& options) {
              ": the number must be a multiple of 10, because a tenth of the runs of a "
              "level starts the chains of the next level");
   if (options.certify.shards > 1 && !options.merge.empty())
-    fail(ErrorCode::usage, "--shard and --merge cannot be given together; leave one of them out");
+    fail(ErrorCode::usage, "--shard and --merge cannot be given together. Leave one of them out");
 }
 
 void certify_pattern(Context& context, CertifyCommand& options) {

@@ -84,10 +84,10 @@ std::string own_need(const Task& input, CheckOptions judged) {
 std::vector<AnswerPart> need_parts(const ActuatorNeed& need, const std::string& profile) {
   const std::string weak =
       "  profile " + profile + " is too weak: the motion needs more than its motors give";
-  const std::string enough = need.sufficient.empty()
-                                 ? "no other profile is strong enough"
-                                 : "strong enough: " + text::join(need.sufficient, ", ");
-  return {{Worth::remark, {"  " + need.text + "\n", weak + "; " + enough + "\n", weak + "\n"}}};
+  const std::string enough = need.sufficient.empty() ? "No other profile is strong enough"
+                                                     : "Profiles that are strong enough: " +
+                                                           text::join(need.sufficient, ", ");
+  return {{Worth::remark, {"  " + need.text + "\n", weak + ". " + enough + "\n", weak + "\n"}}};
 }
 
 // The reasons for which `export` refuses the pattern, without the findings.
@@ -370,7 +370,7 @@ void watch(Context& context, const CheckCommand& options) {
   if (file == "-")
     fail(
         ErrorCode::usage,
-        "check --watch: standard input does not change, so there is nothing to watch; name a file");
+        "check --watch: standard input does not change, so there is nothing to watch. Name a file");
   Stamps seen;
   std::optional<int> errors;
   while (true) {
@@ -432,7 +432,7 @@ void add_check(Command& app, Context& context) {
       "  ayumi check a.json b.json --json\n  ayumi check walk.json --watch\n"
       "  ayumi check walk.json --plot joints.svg\n"
       "  ayumi check --tolerances\n"
-      "check assumes level ground; slopes, bumps and moving floors are tested by simulate only.");
+      "check assumes level ground. Slopes, bumps and moving floors are tested by simulate only.");
   static CheckCommand options;
   command->add_option("PATTERN", options.patterns, "Pattern files.");
   command

@@ -58,14 +58,14 @@ Recordings read_recordings(const CompareCommand& options, const RobotModel& mode
     }
     if (all.angles)
       fail(ErrorCode::usage, {file},
-           "another file already contains joint angles; give only one such file");
+           "another file already contains joint angles. Give only one such file");
     all.angles = read_angles(bytes, file, model, options.reading);
   };
   for (const std::string& file : options.measured) add(file, false);
   if (!options.loads.empty()) add(options.loads, true);
   if (all.names.empty())
     fail(ErrorCode::usage,
-         "compare: no recording is given; name a recording of joint angles or of sensors");
+         "compare: no recording is given. Name a recording of joint angles or of sensors");
   return all;
 }
 
@@ -74,10 +74,10 @@ std::string curve_words(const ComparedCurve& curve, double unit, const std::stri
                       " on average, at most " + text::brief(curve.largest / unit, 3) + name +
                       " at " + text::fixed(curve.largest_at, 3) + " s";
   if (std::abs(curve.lag) >= 0.00005)  // a lag that would be printed as 0.0 ms is left out
-    words += "; the recording is " + text::fixed(1000 * std::abs(curve.lag), 1) +
+    words += ". The recording is " + text::fixed(1000 * std::abs(curve.lag), 1) +
              (curve.lag > 0 ? " ms behind the run" : " ms ahead of the run");
   if (curve.unit != "rad" && curve.correlation != 0)
-    words += "; the correlation is " + text::fixed(curve.correlation, 3);
+    words += ". The correlation is " + text::fixed(curve.correlation, 3);
   return words + "\n";
 }
 
@@ -123,19 +123,20 @@ std::string comparison_words(const Comparison& found, const Recordings& recordin
     words += curve_words(load, 1, load.unit.empty() ? "" : " " + load.unit);
   if (!found.loads.empty()) {
     words += "landings: " + std::to_string(found.landings.size()) +
-             " are both in the run and in the recording, with times that differ by at most " +
-             text::fixed(1000 * largest_landing(found), 0) + " ms; " +
+             " are in both the run and the recording, and their times differ by at most " +
+             text::fixed(1000 * largest_landing(found), 0) + " ms. " +
              std::to_string(found.lone_landings.size()) +
-             (found.lone_landings.size() == 1 ? " is" : " are") + " in only one of the two\n";
+             (found.lone_landings.size() == 1 ? " is" : " are") +
+             " only in the run or only in the recording\n";
     for (const ComparedLanding& landing : found.landings) {
       const double later = landing.measured - landing.simulated;
-      words += std::string("  ") + name_of(landing.foot) + " at " +
+      words += std::string("  ") + name_of(landing.foot) + " foot at " +
                text::fixed(landing.simulated, 3) + " s of the run, " +
                text::fixed(1000 * std::abs(later), 0) + (later < 0 ? " ms earlier" : " ms later") +
                " in the recording\n";
     }
     for (const LoneLanding& landing : found.lone_landings)
-      words += std::string("  ") + name_of(landing.foot) + " at " + text::fixed(landing.t, 3) +
+      words += std::string("  ") + name_of(landing.foot) + " foot at " + text::fixed(landing.t, 3) +
                " s of the run, only in the " + (landing.measured ? "recording" : "run") + "\n";
   }
   if (!found.imu.empty()) words += "differences of the IMU:\n";

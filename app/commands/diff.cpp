@@ -71,7 +71,7 @@ void diff(Context& context, const DiffCommand& options) {
   if (a.robot.dof_names() != b.robot.dof_names())
     fail(ErrorCode::bad_pattern, {options.b},
          "the robot is '" + b.robot.name() + "', but the robot of " + options.a + " is '" +
-             a.robot.name() + "'; only patterns of the same robot can be compared");
+             a.robot.name() + "'. Only patterns of the same robot can be compared");
   const ConsistencyReport check_a = check_consistency(a.robot, a.series, check_options(a));
   const ConsistencyReport check_b = check_consistency(b.robot, b.series, check_options(b));
   const MotionChange change = motion_change(a.robot, a.series, b.series);

@@ -336,15 +336,15 @@ void retime(Context& context, const EditCommand& options) {
     fail(ErrorCode::usage, "edit retime: give either --scale S or --to-limits");
   if (options.local && !options.to_limits)
     fail(ErrorCode::usage,
-         "edit retime: --local works only together with --to-limits; add --to-limits, or leave "
+         "edit retime: --local works only together with --to-limits. Add --to-limits, or leave "
          "--local out");
   if (options.margin >= 0 && !options.local)
     fail(ErrorCode::usage,
-         "edit retime: --margin works only together with --to-limits --local; add both, or leave "
+         "edit retime: --margin works only together with --to-limits --local. Add both, or leave "
          "--margin out");
   if (options.keep_pauses && !options.local)
     fail(ErrorCode::usage,
-         "edit retime: --keep-pauses works only together with --to-limits --local; add both, or "
+         "edit retime: --keep-pauses works only together with --to-limits --local. Add both, or "
          "leave --keep-pauses out");
   const Given given = load(context, options);
   const Task& input = given.task;
@@ -444,7 +444,7 @@ void join(Context& context, const EditCommand& options) {
       fail(ErrorCode::bad_pattern, {options.patterns[i], "/robot"},
            "the robot is '" + next.pattern.robot + "', but the robot of " +
                options.patterns.front() + " is '" + input.pattern.robot +
-               "'; give patterns of the same robot");
+               "'. Give patterns of the same robot");
     joins.push_back(input.series.duration());
     add_caution(input.caution, next.caution);
     replace_motion(input, joined_motion(context, options, input, {input.pattern, input.series},
@@ -476,7 +476,7 @@ GaitCycle best_cycle(const RobotModel& robot, const MotionPart& walk) {
 void loop_cycle(Context& context, const EditCommand& options) {
   if (options.over > 0)
     fail(ErrorCode::usage,
-         "edit loop: --cycle repeats steps without a stop, so there is no transition; leave --over "
+         "edit loop: --cycle repeats steps without a stop, so there is no transition. Leave --over "
          "out");
   const Given given = load(context, options);
   const Task& input = given.task;
@@ -486,9 +486,9 @@ void loop_cycle(Context& context, const EditCommand& options) {
     fail(ErrorCode::bad_pattern, {options.pattern},
          "the best cycle of two steps begins at " +
              text::fixed(static_cast<double>(cycle.begin) * input.series.dt, 3) +
-             " s, and its end does not meet its beginning; the differences are: " +
+             " s, and its end does not meet its beginning. The differences are: " +
              gap_and_limits(cycle.gap) +
-             "; take a walk that has more steps, all of the same length and period");
+             ". Take a walk that has more steps, all of the same length and period");
   const std::string table = table_beside(options.out).string();
   const CommandSeries closed = with_closed_cycle(input.series, cycle);
   const auto part = [&](long first, long last) {
@@ -528,7 +528,7 @@ void loop_cycle(Context& context, const EditCommand& options) {
 void loop(Context& context, const EditCommand& options) {
   if (options.alone && !options.cycle)
     fail(ErrorCode::usage,
-         "edit loop: --alone works only together with --cycle; add --cycle, or leave --alone out");
+         "edit loop: --alone works only together with --cycle. Add --cycle, or leave --alone out");
   if (options.cycle) return loop_cycle(context, options);
   const Given given = load(context, options);
   Task input = given.task;
@@ -540,7 +540,7 @@ void loop(Context& context, const EditCommand& options) {
     if (options.over <= 0)
       fail(ErrorCode::bad_pattern, {options.pattern},
            "the end of the motion differs from its beginning: " + gap_and_limits(before) +
-               "; --over S adds a transition of S seconds from the end to the beginning");
+               ". --over S adds a transition of S seconds from the end to the beginning");
     // The first samples again, at rest: the beginning is held for a moment.
     Pattern still = once;
     still.phases = {Phase{kRest, Support::both, {}, {}, {}}};
@@ -562,8 +562,8 @@ void loop(Context& context, const EditCommand& options) {
     held.viip.clear();
     if (samples.samples.front().state.dtheta.cwiseAbs().maxCoeff() > 1e-9)
       fail(ErrorCode::bad_pattern, {options.pattern},
-           "joints move when the motion begins, so no transition can lead to its beginning; "
-           "let the motion begin at rest (edit ramp --in)");
+           "joints move when the motion begins, so no transition can lead to its beginning. "
+           "Let the motion begin at rest (edit ramp --in)");
     replace_motion(input, joined_motion(context, options, input, {input.pattern, input.series},
                                         {still, held}, options.over, reason));
   }
@@ -571,7 +571,7 @@ void loop(Context& context, const EditCommand& options) {
   if (!closed.closed)
     fail(ErrorCode::bad_pattern, {options.pattern},
          "the end of the motion still differs from its beginning: " + gap_and_limits(closed) +
-             "; edit bake and edit ramp can bring both ends to rest in one "
+             ". `ayumi edit bake` and `ayumi edit ramp` can bring both ends to rest in one "
              "posture");
   const auto join = [&](const Sampled& a, const Sampled& b) {
     return joined_motion(context, options, input, a.part(), b.part(), 0, reason);
@@ -607,10 +607,10 @@ void edit_key(Context& context, const EditCommand& options) {
   if (options.key_by != 0) key.to = key.at + options.key_by;
   if (!key.to && !key.mirror)
     fail(ErrorCode::usage,
-         "edit key: no change of the keyframe is given. Move the keyframe with --to T or --by S, "
-         "move a copy of it with --copy, or exchange left and right with --mirror");
+         "edit key: no change of the keyframe is given. Move the keyframe with --to T or --by S. "
+         "Add --copy to move a copy of the keyframe. --mirror exchanges left and right");
   if (key.copy && !key.to)
-    fail(ErrorCode::usage, "edit key: --copy needs the time of the copy; give --to T or --by S");
+    fail(ErrorCode::usage, "edit key: --copy needs the time of the copy. Give --to T or --by S");
   const Given given = load(context, options);
   const Task& input = given.task;
   const Edited edited =
@@ -639,7 +639,7 @@ void edit_key(Context& context, const EditCommand& options) {
 void ramp(Context& context, const EditCommand& options) {
   if (options.ramps.in <= 0 && options.ramps.out <= 0)
     fail(ErrorCode::usage,
-         "edit ramp: both --in and --back are 0; set at least one of them above 0 s");
+         "edit ramp: both --in and --back are 0. Set at least one of them above 0 s");
   const Given given = load(context, options);
   const Task& input = given.task;
   const Edited edited = in_own_text(options, given,

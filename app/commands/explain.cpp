@@ -30,7 +30,7 @@ const Equation& find_equation(const std::string& word) {
   for (const Equation& e : equations())
     if (std::to_string(e.number) == digits) return e;
   fail(ErrorCode::usage, "explain: there is no equation '" + word +
-                             "'; the equations of the paper are 1 to " +
+                             "'. The equations of the paper are 1 to " +
                              std::to_string(equations().back().number));
 }
 
@@ -42,7 +42,7 @@ struct Place {
 Place place_of(const std::string& text) {
   const size_t at = text.rfind('@');
   if (at == std::string::npos)
-    fail(ErrorCode::usage, "explain: '" + text + "' has no time; write RUN@SECONDS");
+    fail(ErrorCode::usage, "explain: '" + text + "' has no time. Write RUN@SECONDS");
   Place place{text.substr(0, at)};
   const char* end = text.data() + text.size();
   const auto [rest, error] = std::from_chars(text.data() + at + 1, end, place.t);

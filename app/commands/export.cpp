@@ -186,7 +186,7 @@ void set_rate(const ExportOptions& options, Source& source) {
       source.model, written_layout(source.model, options.layout), source.reference.dt);
   if (!refusal.empty())
     fail(ErrorCode::bad_file, {options.output},
-         refusal + "; choose one of these intervals with --interval");
+         refusal + ". Choose one of these intervals with --interval");
 }
 
 Source source_of_table(const ExportOptions& options, const Context& context,
@@ -204,7 +204,7 @@ Source source_of_table(const ExportOptions& options, const Context& context,
   if (!made.robot_sha256.empty() && made.robot_sha256 != source.model.description().sha256)
     fail(ErrorCode::bad_file, {options.input},
          "robot '" + source.model.name() +
-             "' has changed since this table was made; run the pattern again");
+             "' has changed since this table was made. Run the pattern again");
   if (!caution.unfit.empty()) source.unfit.push_back(caution.unfit);
   return source;
 }
@@ -218,7 +218,7 @@ void require_table_of_log(const ReferenceTrajectory& table, const ReferenceTraje
   constexpr double kRounding = 1e-9;
   const auto refuse = [&](const std::string& what) {
     fail(ErrorCode::bad_file, {file},
-         what + "; the table or the log has changed; make the run again");
+         what + ". The table or the log has changed. Make the run again");
   };
   if (table.dt != of_log.dt)
     refuse("the table has a row every " + text::brief(1000 * table.dt) +
@@ -265,7 +265,7 @@ CautiousTable table_of_run(const ExportOptions& options, const RunFolder& run,
   const bool reacts = !run.reference_caution.disturbances.empty();
   if (options.pushed && !reacts && !(run.light ? disturbed : run.pushed.has_value()))
     fail(ErrorCode::usage, {options.input},
-         "--pushed needs a run with disturbances, and this run has none; leave "
+         "--pushed needs a run with disturbances, and this run has none. Leave "
          "--pushed out");
   if (run.light) return {made(log), disturbed ? run.pushed_caution : run.reference_caution};
   const bool pushed = (options.pushed && run.pushed) || !run.reference;
@@ -300,7 +300,7 @@ void require_tick_of(const RobotModel& model, const ExportOptions& options, cons
   fail(ErrorCode::bad_file, {options.input},
        "the log has a row every " + text::brief(1000 * log.dt) +
            " ms, but the servo period of robot '" + model.name() + "' is " +
-           text::brief(1000 * period) + " ms; the log has changed; make the run again");
+           text::brief(1000 * period) + " ms. The log has changed. Make the run again");
 }
 
 // Every file of the folder is first compared with its hash in run.json.
@@ -373,7 +373,7 @@ Source source_of(const ExportOptions& options, const Context& context) {
   const std::string text = text_of_table(options.input);
   if (!options.servo.empty())
     fail(ErrorCode::usage, {options.input},
-         "--servo cannot change the content of a table that exists; to "
+         "--servo cannot change the content of a table that exists. To "
          "choose the content, export the pattern or the run");
   const ReferenceTrajectory table = parse_reference(text, options.input);
   require_table_of_run(table, options, context);
@@ -708,7 +708,7 @@ void export_sign_test(const ExportOptions& options, Context& context) {
     if (!safe.report.safe)
       fail(ErrorCode::bad_model,
            "sign test of " + joint + ": " + text_of(safe.report.violations.front()) +
-               "; correct the limits of the robot, or the posture in which the test begins");
+               ". Correct the limits of the robot, or the posture in which the test begins");
     safe.table.provenance.robot = name;
     safe.table.provenance.robot_sha256 = model.description().sha256;
     safe.table.provenance.pattern = "sign test of " + joint;
@@ -777,7 +777,7 @@ void export_table(ExportOptions options, Context& context) {
         "\n");
   if (options.format == "hoap" && !knows_torque(source))
     context.print(
-        "  the torques are not checked, because a table contains no torques; export the RUN folder "
+        "  the torques are not checked, because a table contains no torques. Export the RUN folder "
         "to check the torques\n");
   context.print_json(as_json(options, source, safe, others, refused));
   context.exit_code = refused.empty() ? 0 : 1;

@@ -35,14 +35,14 @@ void read_wishes(GainsCommand& options) {
                     (options.frequency != 0 || options.damping != 0);
   if (given > 1)
     fail(ErrorCode::usage,
-         "the poles are given more than once; use only one of --poles, --time-constants, and "
+         "the poles are given more than once. Use only one of --poles, --time-constants, and "
          "--frequency with --damping");
   if (!options.poles.empty())
     options.wishes.poles = {{{Complex(options.poles[0]), Complex(options.poles[1])}}};
   for (const double t : options.time_constants)
     if (!(t > 0))
       fail(ErrorCode::usage,
-           "--time-constants: " + text::brief(t) + " s is not possible; give a time above 0 s");
+           "--time-constants: " + text::brief(t) + " s is not possible. Give a time above 0 s");
   if (!options.time_constants.empty())
     options.wishes.poles = {
         {Complex(-1 / options.time_constants[0]), Complex(-1 / options.time_constants[1])}};
@@ -59,7 +59,7 @@ std::string mode_text(const Complex& pole) {
   std::string line = std::string(pole.real() < 0 ? "  decays" : "  grows") +
                      " with the time constant " + text::brief(std::abs(1 / pole.real())) + " s";
   if (std::abs(pole.imag()) > 1e-6)
-    line += ", oscillates at " + text::fixed(std::abs(pole.imag()) / (2 * M_PI), 2) + " Hz";
+    line += " and oscillates at " + text::fixed(std::abs(pole.imag()) / (2 * M_PI), 2) + " Hz";
   return line + "\n";
 }
 
@@ -77,20 +77,20 @@ std::string report(const RobotModel& model, const GainStudy& d) {
       " ms: the reference ZMP moves by K times the error of the COG plus D times the rate of this "
       "error, equations (18)(19)\n";
   out += "short term  " + text::fixed(100 * p.zmp_gain / (1 + p.zmp_gain), 0) +
-         " % of a ZMP error is answered immediately; the time constant of the ZMP filter is " +
+         " % of a ZMP error is answered immediately. The time constant of the ZMP filter is " +
          text::fixed(1e3 * p.zmp_filter / w, 1) + " ms\n";
   out += "return      the reference returns to the command within " +
          text::fixed(1e3 / (w * p.pull_rate), 0) + " ms";
-  out += p.offset_time > 0 ? "; a constant ZMP offset is accepted as normal after " +
+  out += p.offset_time > 0 ? ". A constant ZMP offset is accepted as normal after " +
                                  text::fixed(1e3 * p.offset_time / w, 0) + " ms\n"
-                           : "; a constant ZMP offset is never accepted as normal\n";
+                           : ". A constant ZMP offset is never accepted as normal\n";
   const LoopModel& weakest = d.loops[d.weakest.index];
   out += "the loop with sensors and servos that are " + text::brief(1e3 * weakest.delay) +
          " ms late is stable while the robot stands on both feet, and while it stands on one foot "
          "for the time of a step. The loop stays stable " +
          (d.largest_ka >= GainStudy::kMostKa ? "for ka beyond " + text::brief(GainStudy::kMostKa)
                                              : "for ka up to " + text::fixed(d.largest_ka, 2)) +
-         ". The slowest modes of an error (" + name_of(weakest) + "):\n";
+         ". These are the slowest modes of an error (" + name_of(weakest) + "):\n";
   int shown = 0;
   for (const Complex& pole : d.weakest.analysis.poles)
     if (pole.imag() >= 0 && -pole.real() > kShown * w && shown++ < 4) out += mode_text(pole);

@@ -42,21 +42,22 @@ std::string joint_words(const IdentifiedJoint& j) {
   std::string words = "  " + j.joint + ": ";
   if (!j.moved)
     return words +
-           "the command does not move this joint; the measured angle minus the command is " +
+           "the command does not move this joint. The measured angle minus the command is " +
            text::fixed(j.offset.value / kIdentifiedDegree, 3) + " deg\n";
   words += "delay " + estimate_words(j.delay, 1e-3, 2, "ms");
   if (j.kp.known)
     words += ", kp " + estimate_words(j.kp, 1, 0, "N m/rad");
   else if (j.kp.lower > 0)
     words += ", kp above " + text::brief(j.kp.lower, 3) + " N m/rad";
-  if (j.damping.known) words += ", kd + viscous " + estimate_words(j.damping, 1, 2, "N m s/rad");
-  if (j.coulomb.known) words += ", Coulomb " + estimate_words(j.coulomb, 1, 3, "N m");
+  if (j.damping.known)
+    words += ", kd + viscous friction " + estimate_words(j.damping, 1, 2, "N m s/rad");
+  if (j.coulomb.known) words += ", Coulomb friction " + estimate_words(j.coulomb, 1, 3, "N m");
   if (j.backlash.value > 0)
     words += ", backlash " + estimate_words(j.backlash, kIdentifiedDegree, 3, "deg");
   words += ", offset from the command " + estimate_words(j.offset, kIdentifiedDegree, 3, "deg");
   if (j.has_sag)
     words += ", sag " + text::fixed(j.sag / kIdentifiedDegree, 3) + " deg between swing and stance";
-  words += "; the model differs from the recording by " +
+  words += ". The model differs from the recording by " +
            text::fixed(j.mean_error / kIdentifiedDegree, 3) + " deg on average and by at most " +
            text::fixed(j.largest_error / kIdentifiedDegree, 3) + " deg at " +
            text::fixed(j.largest_at, 3) + " s\n";
@@ -132,7 +133,7 @@ void identify_servos(const Context& context, const IdentifyCommand& options) {
   if (how.stand == RobotStand::feet && !model.has_soles())
     fail(ErrorCode::bad_model,
          options.robot +
-             ": the robot has no soles; add \"soles\" to the sidecar, or use --stand "
+             ": the robot has no soles. Add \"soles\" to the sidecar, or use --stand "
              "fixed");
   how.longest_lag = 0.001 * options.longest_lag_ms;
   how.loads_place = options.loads;
@@ -140,7 +141,7 @@ void identify_servos(const Context& context, const IdentifyCommand& options) {
   const Identification found = identify(model, motion, how, options.measured, context.progress());
   std::string words = options.measured + ": " + text::fixed(found.seconds, 3) + " s, " +
                       std::to_string(found.joints.size()) +
-                      " joints; values with their 95 % intervals\n";
+                      " joints. Each value is followed by its 95 % interval\n";
   if (!found.caution.empty()) words += "  " + found.caution + "\n";
   Json joints = Json::array();
   bool advice = false;
@@ -159,7 +160,7 @@ void identify_servos(const Context& context, const IdentifyCommand& options) {
     if (std::any_of(found.joints.begin(), found.joints.end(),
                     [](const IdentifiedJoint& joint) { return joint.delay_is_lag; }))
       words +=
-          "  for joints whose delay and damping cannot be distinguished, the whole delay is "
+          "  if the delay and the damping of a joint cannot be distinguished, the whole delay is "
           "written as damping: kd = kp times delay\n";
   }
   context.print(words);

@@ -74,7 +74,7 @@ void refuse_own_input(const ImportCommand& options) {
     if (fs::equivalent(path, options.file, ignored))
       fail(ErrorCode::bad_file, {options.file},
            "the result would overwrite this file (" + path.string() +
-               "); choose another name with -o");
+               "). Choose another name with -o");
 }
 
 void import_motion(const Context& context, const ImportCommand& options) {
@@ -170,10 +170,9 @@ void add_import(Command& app, Context& context) {
       ->check(number_within(ContactThresholds::kSpeed))
       ->capture_default_str();
   command
-      ->add_option(
-          "--contact-load", options.how.contact.load,
-          "Vertical ground force below which the robot is taken to be in the air: at these times, "
-          "no sole carries it [multiple of the weight].")
+      ->add_option("--contact-load", options.how.contact.load,
+                   "Vertical ground force below which no sole carries the robot, so that the robot "
+                   "is in the air [multiple of the weight].")
       ->check(number_within(ContactThresholds::kLoad))
       ->capture_default_str();
   command->add_flag("--commands", options.how.reading.commands,

@@ -135,7 +135,7 @@ SidecarGains gains_for(const RobotModel& model) {
   result.to_do =
       "Check the stiffness of the servos of the legs: they are so soft that no gains of the "
       "control law were found that keep the robot standing" +
-      (needed > 0 ? "; such gains exist if kp and kd of these servos are " +
+      (needed > 0 ? ". Such gains exist if kp and kd of these servos are " +
                         text::brief(needed, 2) + " times as large."
                   : std::string("."));
   return result;

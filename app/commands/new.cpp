@@ -318,7 +318,7 @@ void new_walk(Context& context, NewOptions options) {
   } catch (const Error& error) {
     const std::string fits = error.code() == ErrorCode::bad_pattern ? what_fits(model, w) : "";
     if (error.code() != ErrorCode::bad_pattern) throw;
-    throw_with_more(error, fits.empty() ? what_it_can_do(model, options.file.robot) : "; " + fits);
+    throw_with_more(error, fits.empty() ? what_it_can_do(model, options.file.robot) : ". " + fits);
   }
   const std::string fits = what_fits(model, w);
   if (!fits.empty()) context.print("  " + fits + "\n");
@@ -508,7 +508,7 @@ void new_turn(Context& context, NewOptions options) {
   const double angle = options.angle_deg.value_or(90);
   if (!(std::abs(angle) >= 1 && std::abs(angle) <= 3600))
     fail(ErrorCode::usage, "turn: angle " + text::brief(angle) +
-                               " deg is out of range; give 1 to 3600 deg to either side");
+                               " deg is out of range. Give 1 to 3600 deg to either side");
   WalkParameters& w = options.walk;
   w.stride = 0;
   w.period = options.period.value_or(scaled.period);
@@ -597,17 +597,17 @@ void new_viip(Context& context, const NewOptions& options) {
   const bool steps = options.viip_steps > 0;
   if (steps + !options.cog.empty() + !options.cog_velocity.empty() != 1)
     fail(ErrorCode::usage,
-         "viip: give exactly one of --cog DX,DY,DZ, --cog-velocity VX,VY,VZ and --steps N. "
-         "--velocity and --turn can be added to --steps, and --duration to --cog-velocity");
+         "viip: give exactly one of --cog DX,DY,DZ, --cog-velocity VX,VY,VZ and --steps N. You can "
+         "add --velocity and --turn to --steps, and --duration to --cog-velocity");
   if (!steps && (!options.velocity.empty() || options.turn_deg != 0))
     fail(ErrorCode::usage,
-         "viip: --velocity and --turn work only together with --steps N; add --steps");
+         "viip: --velocity and --turn work only together with --steps N. Add --steps");
   const auto moves = [](double v) { return v != 0; };
   if (options.viip_steps == 1 &&
       (options.turn_deg != 0 ||
        std::any_of(options.velocity.begin(), options.velocity.end(), moves)))
     fail(ErrorCode::usage,
-         "viip: the last step brings the feet together, so one step cannot go forward; give "
+         "viip: the last step brings the feet together, so one step cannot go forward. Give "
          "--steps 2 or more");
   Pattern pattern;
   pattern.robot = options.file.robot;

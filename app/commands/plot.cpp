@@ -103,7 +103,7 @@ void plot(const PlotOptions& asked, Context& context) {
   for (const LabelledLog& entry : logs) runs.push_back({entry.label, &entry.log});
   if (runs.empty())
     fail(ErrorCode::usage,
-         "plot: the run has no simulation log, so there is nothing to draw; simulate the pattern "
+         "plot: the run has no simulation log, so there is nothing to draw. Simulate the pattern "
          "again");
   std::vector<std::string> series;
   if (options.top) {
@@ -120,7 +120,7 @@ void plot(const PlotOptions& asked, Context& context) {
     }
     if (!model && loci.frame == Frame::foot)
       fail(ErrorCode::usage,
-           "--frame foot: the robot of the run is not known; name it with --robot");
+           "--frame foot: the robot of the run is not known. Name it with --robot");
     write_loci(runs, options.output, loci);
     series = loci_series(loci);
   }

@@ -59,7 +59,7 @@ RobotModel robot_of_source(const Context& context, const PostureCommand& options
                            const std::string& named) {
   const std::string& robot = options.robot.empty() ? named : options.robot;
   if (robot.empty())
-    fail(ErrorCode::usage, {options.source}, "the library names no robot; give --robot ROBOT");
+    fail(ErrorCode::usage, {options.source}, "the library names no robot. Give --robot ROBOT");
   return load_robot(robot, robot_search(context), {.meshes = true});
 }
 
@@ -173,7 +173,7 @@ std::string library_text(const Context& context, const PostureCommand& options,
   if (library.postures.contains(options.as) && !context.force)
     fail(ErrorCode::bad_file, {options.out},
          "the library already has a posture '" + options.as +
-             "'; choose another name with --as, or replace the posture with --force");
+             "'. Choose another name with --as, or replace the posture with --force");
   return edited_text(read_file(options.out),
                      {{PatternEdit::Kind::set, pointer_of(options.as),
                        angles_json(model, angles, library.degrees).dump()}});
@@ -283,7 +283,7 @@ size_t row_at(const PostureCommand& options, double dt, size_t rows) {
   if (!(options.at >= 0 && options.at <= end + dt / 2))
     fail(ErrorCode::usage, "--at " + text::brief(options.at) + ": " + options.source +
                                " lasts from 0 to " + text::fixed(end, 3) +
-                               " s; give a time within this range");
+                               " s. Give a time within this range");
   return std::min(rows - 1, static_cast<size_t>(std::lround(options.at / dt)));
 }
 
@@ -295,7 +295,7 @@ Instant instant_of(const Context& context, const PostureCommand& options) {
   }
   if (!options.log.empty())
     fail(ErrorCode::usage,
-         "--log: " + options.source + " is not a run, so it has no logs; leave --log out");
+         "--log: " + options.source + " is not a run, so it has no logs. Leave --log out");
   std::error_code ignored;
   const bool is_table = fs::path(options.source).extension() == ".csv" ||
                         (fs::is_regular_file(options.source, ignored) &&

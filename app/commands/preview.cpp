@@ -64,7 +64,7 @@ void switch_marks(const std::string& option, const std::vector<std::string>& nam
         found = true;
       }
     if (!found)
-      fail(ErrorCode::usage, option + " " + word + ": unknown mark; the marks are " +
+      fail(ErrorCode::usage, option + " " + word + ": unknown mark. The marks are " +
                                  text::join(known, ", ") + text::suggestion(word, known));
   }
 }

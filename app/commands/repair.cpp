@@ -48,9 +48,9 @@ struct RepairCommand {
 constexpr size_t kMissedListed = 4;
 
 constexpr const char* kPartialMark =
-    "PARTIAL: the repair was stopped before its end; this pattern is not consistent.";
+    "PARTIAL: the repair was stopped before its end. This pattern is not consistent.";
 constexpr const char* kStoppedMark =
-    "PARTIAL: the repair was stopped before its end; this pattern passes the check, but a smaller "
+    "PARTIAL: the repair was stopped before its end. This pattern passes the check, but a smaller "
     "change may be enough.";
 
 std::vector<std::string> marks(const RepairResult& result) {
@@ -153,7 +153,7 @@ std::string in_words(const RepairCommand& options, const Task& input, const Gene
   const RobotModel& model = input.robot;
   const RepairResult& result = made.repair;
   std::string out = options.pattern + ": " +
-                    (result.partial       ? "stopped; the result is partial"
+                    (result.partial       ? "stopped. The result is partial"
                      : !goal_need.empty() ? "the motion is consistent, but a goal is not possible"
                                           : words_of(result.status)) +
                     "\n";
@@ -182,8 +182,9 @@ std::string in_words(const RepairCommand& options, const Task& input, const Gene
   append(parts, mistake_parts(mistakes, false));
   append(parts, search_parts(mistakes));
   if (result.status == RepairStatus::repaired) append(parts, check_parts(result.check, model));
-  return fitted(parts, room_of(kRowsWhenBad),
-                "  shortened; `ayumi check --all` of the pattern prints all of its findings\n");
+  return fitted(
+      parts, room_of(kRowsWhenBad),
+      "  this answer is shortened. `ayumi check --all` prints all findings of the pattern\n");
 }
 
 std::string in_words(const std::vector<PassingValues>& all) {
@@ -437,14 +438,14 @@ GeneratedMotion repair_telling(const Task& input, const RepairOptions& wishes, b
 void repair_pattern(Context& context, RepairCommand options) {
   if (options.pattern == "-")
     fail(ErrorCode::usage,
-         "repair adds a correction to the text of the pattern, so it needs a file; name the file "
+         "repair adds a correction to the text of the pattern, so it needs a file. Name the file "
          "of the pattern in place of -");
   refuse_overwriting(context, options.out);
   if (!options.plot.empty()) refuse_overwriting(context, options.plot);
   refuse_wrong_wishes(context, options);
   if (options.from_scratch && !options.locked.empty())
     fail(ErrorCode::usage,
-         "--from-scratch makes a new motion, so there is nothing to lock; leave --from-scratch or "
+         "--from-scratch makes a new motion, so there is nothing to lock. Leave --from-scratch or "
          "--lock out");
   const Task input = options.from_scratch ? load_plan(context, options) : load(context, options);
   options.repair = repair_options(options, input);
@@ -529,10 +530,10 @@ void add_repair(Command& app, Context& context) {
       ->type_name("JOINT=FACTOR")
       ->allow_extra_args(false);
   command
-      ->add_option(
-          "--trust", options.trust,
-          "Quantity that is kept where posture, COG and ZMP disagree. The other two are adapted to "
-          "this quantity (default: the choice in the pattern; posture if the pattern has none).")
+      ->add_option("--trust", options.trust,
+                   "Quantity that is kept where posture, COG and ZMP disagree. The repair adapts "
+                   "the other two quantities to this quantity (default: the choice in the pattern; "
+                   "posture if the pattern has none).")
       ->check(one_of({"posture", "cog", "zmp"}))
       ->type_name("QUANTITY");
   command->add_flag("--baked", options.baked,
@@ -553,7 +554,8 @@ void add_repair(Command& app, Context& context) {
       ->add_option(
           "--margin", options.margin,
           "Wanted distance from the ZMP to the edge of the support [m]. Where the original motion "
-          "has a smaller distance, the repair tries to reach the wanted one (default: 0.9 x the "
+          "has a smaller distance, the repair tries to reach the wanted distance (default: 0.9 x "
+          "the "
           "radius of the largest circle inside the sole).")
       ->check(number_within(RepairOptions::kZmpMargin))
       ->type_name("M");

@@ -80,12 +80,12 @@ RobotModel robot_of(const ReplayCommand& options, const Context& context,
                     const std::string& bytes) {
   if (is_pattern_text(bytes))
     fail(ErrorCode::bad_file, {options.file},
-         "this is a pattern, but replay needs a table; `ayumi export` writes the table of a "
+         "this is a pattern, but replay needs a table. `ayumi export` writes the table of a "
          "pattern");
   std::string recorded;
   if (options.robot.empty() && has_head(bytes)) recorded = robot_in_head(bytes, options.file);
   if (options.robot.empty() && recorded.empty())
-    fail(ErrorCode::usage, {options.file}, "the file does not name its robot; give --robot ROBOT");
+    fail(ErrorCode::usage, {options.file}, "the file does not name its robot. Give --robot ROBOT");
   return robot_of_run(context, options.robot, recorded);
 }
 
@@ -252,7 +252,7 @@ void replay(Context& context, const ReplayCommand& options) {
     how.seed = context.seed;
     logs.push_back(simulate(task, how, context.progress(), context.command_line));
     const Tracking tracking = tracking_of(logs.back(), static_cast<size_t>(board.targets.cols()));
-    words += "  simulator " + plant + ": " + outcome_text(logs.back()) + "; the joints are " +
+    words += "  simulator " + plant + ": " + outcome_text(logs.back()) + ". The joints are " +
              in_degrees(tracking.mean) + " from their targets on average and " +
              in_degrees(tracking.most, 2) + " at most (" + tracking.joint + " at " +
              text::fixed(tracking.at, 3) + " s)\n";

@@ -338,7 +338,7 @@ void MainJob::write_report(const RobotModel& model, const std::shared_ptr<const 
   say("report",
       "report.html (" + std::to_string(made.html.size() / 1000) + " kB" +
           (has_replay() ? ")"
-                        : "; without the replay, because the program was built without npm)"));
+                        : ", without the replay, because the program was built without npm)"));
 }
 
 std::vector<std::string> MainJob::file_names() const {
@@ -388,7 +388,7 @@ void run_patterns(Context& context, const RunCommand& options) {
       fail(ErrorCode::usage, {pattern},
            "another input has the same name, so both results would be written to " +
                target.string() +
-               "; run the command once for each of the two, each time with "
+               ". Run the command once for each of the two, each time with "
                "another -o");
     require_run_target(target, context.force, names_of_files(options));
     targets.push_back(target);

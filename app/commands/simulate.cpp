@@ -94,7 +94,7 @@ RunFolder run_of(const Task& input, StreamedRun simulated) {
 void simulate_pattern(Context& context, const SimulateCommand& options) {
   if (!options.study.empty() && options.number < 0)
     fail(ErrorCode::usage,
-         "--study works only together with --case; add --case N, or leave --study out");
+         "--study works only together with --case. Add --case N, or leave --study out");
   plant_of(options.choice.plant);  // a missing plant is refused before anything is computed
   if (!options.out.empty())
     require_run_target(

@@ -151,11 +151,11 @@ std::vector<bool> asked_cases(const SweepCommand& options, const Shard& shard, l
 void run_sweep(Context& context, const SweepCommand& options) {
   if (options.study.empty())
     fail(ErrorCode::usage,
-         "the argument STUDY is missing; give a study file, or one of the subcommands merge and "
+         "the argument STUDY is missing. Give a study file, or one of the subcommands merge and "
          "status");
   if (options.out.empty())
     fail(ErrorCode::usage,
-         "the option --out is missing; name the file of the results, for example "
+         "the option --out is missing. Name the file of the results, for example "
          "results.db");
   const Shard shard = read_shard(options.shard);
   refuse_bad_names(context, options.outputs);
@@ -201,7 +201,7 @@ void run_sweep(Context& context, const SweepCommand& options) {
   note_work(cost.seconds, cost.useful);
   if (cost.cases > 0)
     context.print("  " + text::counted(cost.cases, "case") + (cost.cases == 1 ? " was" : " were") +
-                  " run; a case took " + text::brief(cost.seconds / double(cost.cases), 3) +
+                  " run. A case took " + text::brief(cost.seconds / double(cost.cases), 3) +
                   " s of processor time on average, and " +
                   text::fixed(100 * (1 - cost.useful / std::max(1e-9, cost.seconds)), 2) +
                   " % of this time was not spent on the simulation\n");
@@ -226,7 +226,7 @@ void refuse_missing(const std::vector<std::unique_ptr<ResultsDatabase>>& files, 
   fail(ErrorCode::bad_file,
        "merge: case " + std::to_string(number) + " is in none of the files" +
            missing_shard(shards, number) +
-           "; nothing was merged. --partial merges the cases that the files have");
+           ". Nothing was merged. --partial merges the cases that the files have");
 }
 
 void merge_results(Context& context, const MergeCommand& options) {
@@ -286,10 +286,11 @@ void show_status(Context& context, const std::string& file) {
   const SweepCounts counts = results.counts();
   const std::vector<std::string> shards = results.shards();
   const SlurmStatus slurm = slurm_status(file);
-  context.print(file + ": " + results.head().name + ", " + counts_words(counts) + "; " +
-                std::to_string(counts.cases - counts.done) + " are missing" +
-                (shards.empty() ? "" : "; shards " + text::join(shards, ", ")) + "\n" +
-                first_errors(results) + slurm_words(slurm));
+  context.print(
+      file + ": " + results.head().name + ", " + counts_words(counts) + "; " +
+      std::to_string(counts.cases - counts.done) + " are missing" +
+      (shards.empty() ? "" : ". The file contains the shards " + text::join(shards, ", ")) + "\n" +
+      first_errors(results) + slurm_words(slurm));
   Json json = Json({{"study", results.head().name},
                     {"cases", counts.cases},
                     {"done", counts.done},
@@ -432,7 +433,7 @@ void add_sweep(Command& app, Context& context) {
     for (const Option* option : slurm_options)
       if (option->count() > 0 && options->engine != "slurm")
         fail(ErrorCode::usage, option->get_name() +
-                                   " works only together with --engine slurm; add --engine slurm, "
+                                   " works only together with --engine slurm. Add --engine slurm, "
                                    "or leave this option out");
     run_sweep(context, *options);
   });

@@ -65,7 +65,7 @@ void tune(Context& context, TuneCommand& options) {
   if (!options.out.empty()) {
     if (options.pattern == "-")
       fail(ErrorCode::usage,
-           "tune -o: standard input is read once and has no text to change; name a file");
+           "tune -o: standard input is read once and has no text to change. Name a file");
     refuse_overwriting(context, options.out);
   }
   const Task input = load_pattern(context, options.pattern, options.input);
@@ -83,8 +83,8 @@ void tune(Context& context, TuneCommand& options) {
   for (const double at : options.times)
     t.phases.push_back({"t = " + text::fixed(at, 3) + " s", at, false});
   const TuneResult result = tune_gains(input.robot, input.series, t, context.progress());
-  std::string out = options.pattern + ": pushes of " + text::brief(t.level) + " B, actuators " +
-                    input.profile + "\n";
+  std::string out = options.pattern + ": pushes of " + text::brief(t.level) +
+                    " B (B = the capture bound), actuators " + input.profile + "\n";
   out +=
       line("before tuning", result.before) + line("after tuning", result.after) + "  \"gains\": {";
   bool first = true;
@@ -93,8 +93,8 @@ void tune(Context& context, TuneCommand& options) {
     first = false;
   }
   out += " }\n  sets of gains tried: " + std::to_string(result.choices) +
-         "; not tried, because their loop is unstable: " + std::to_string(result.refused) +
-         ". Test the result with other pushes (ayumi push)\n";
+         ". Sets that were not tried, because their loop is unstable: " +
+         std::to_string(result.refused) + ". Test the result with other pushes (ayumi push)\n";
   if (!options.out.empty()) {
     write_file(options.out, text_with_gains(options, result));
     out += "  " + options.out + ": the pattern with these gains\n";

@@ -37,7 +37,7 @@ double axis_value(const std::string& word, const std::string& option) {
   const auto read = std::from_chars(word.data(), end, value);
   if (word.empty() || read.ptr != end || read.ec != std::errc() || !std::isfinite(value))
     fail(ErrorCode::usage, option + ": '" + word +
-                               "' is not a number; give values as 0,0.05,0.1 or as "
+                               "' is not a number. Give values as 0,0.05,0.1 or as "
                                "FROM:TO:COUNT, for example 0:0.1:3");
   return value + 0.0;
 }
@@ -55,7 +55,7 @@ std::vector<double> axis_values(const std::string& words, const std::string& opt
                                  std::to_string(kMostValues) + ", but it is " + range[2]);
     if (count == 1 && from != to)
       fail(ErrorCode::usage, option + ": one value cannot span the range from " + range[0] +
-                                 " to " + range[1] + "; give a count of 2 or more");
+                                 " to " + range[1] + ". Give a count of 2 or more");
     for (double i = 0; i < count; ++i) {
       const double value = count == 1 ? from : from + (to - from) * i / (count - 1);
       // The value as a person would write it: 0.1 instead of 0.1 + 1e-17.
@@ -65,7 +65,7 @@ std::vector<double> axis_values(const std::string& words, const std::string& opt
     for (const std::string& word : split_at(words, ',')) values.push_back(axis_value(word, option));
   } else {
     fail(ErrorCode::usage, option + ": '" + words +
-                               "' is not a list of values; give them as 0,0.05,0.1 or as "
+                               "' is not a list of values. Give them as 0,0.05,0.1 or as "
                                "FROM:TO:COUNT, for example 0:0.1:3");
   }
   for (size_t i = 1; i < values.size(); ++i)
@@ -75,7 +75,7 @@ std::vector<double> axis_values(const std::string& words, const std::string& opt
                                  " comes after " + text::exact(values[i - 1]));
   if (values.size() > kMostValues)
     fail(ErrorCode::usage, option + ": " + std::to_string(values.size()) +
-                               " values are too many; give at most " + std::to_string(kMostValues));
+                               " values are too many. Give at most " + std::to_string(kMostValues));
   return values;
 }
 

@@ -106,7 +106,7 @@ GaitMaker::GaitMaker(RobotModel model, const GaitOptions& options)
     : model_(std::move(model)), options_(options) {
   if (!model_.has_soles())
     fail(ErrorCode::bad_model, model_.name() +
-                                   ": the robot has no soles, so it cannot walk; describe "
+                                   ": the robot has no soles, so it cannot walk. Describe "
                                    "the soles under \"soles\" in the sidecar");
   profile_ = model_.limits(options_.profile).name;
   controller_ = Pattern().controller;
@@ -191,7 +191,7 @@ GaitMaker::Made GaitMaker::made(Pattern pattern, const Progress& progress) const
   wishes.check = check_options(task);
   const RepairResult repaired = repair_task(task, wishes, progress);
   if (repaired.status != RepairStatus::repaired) {
-    std::string reason = judged.reason() + "; no repair was found";
+    std::string reason = judged.reason() + ". No repair was found";
     if (!repaired.reasons.empty()) reason += ", because " + repaired.reasons.front();
     throw Missing{"repair", reason};
   }
@@ -252,7 +252,7 @@ void GaitMaker::make(const GaitCell& cell, GaitResult& result, const Progress& p
   if (!open.closed)
     throw Missing{"loop",
                   std::string("the end of the ") + (whole.closed ? "cycle" : "walk") +
-                      " does not meet its beginning; the differences are: " + gap_and_limits(open)};
+                      " does not meet its beginning. The differences are: " + gap_and_limits(open)};
 
   simulate(task, json, progress);
   json["certificate"] = nullptr;
@@ -267,7 +267,7 @@ void GaitMaker::make(const GaitCell& cell, GaitResult& result, const Progress& p
     if (!found.outcome.certified)
       throw Missing{"certify", std::to_string(found.outcome.failures) + " of " +
                                    std::to_string(found.outcome.runs) +
-                                   " runs failed; the robot fails with a probability of at least " +
+                                   " runs failed. The robot fails with a probability of at least " +
                                    share_words(found.lower) + " and at most " +
                                    share_words(found.upper)};
   }

@@ -50,7 +50,7 @@ std::vector<std::string> files_of_library(const fs::path& folder) {
     fail(ErrorCode::bad_file,
          index.string() +
              ": this file is not the index of a library of walks, so ayumi gaits does not replace "
-             "it; move the file away or choose another folder");
+             "it. Move the file away or choose another folder");
   return files;
 }
 
@@ -58,7 +58,7 @@ void require_target(const fs::path& folder, bool replace) {
   if (!is_there(folder)) return;
   if (!fs::is_directory(folder))
     fail(ErrorCode::bad_file, {folder.string()},
-         "this is a file, but -o needs a folder; choose another name");
+         "this is a file, but -o needs a folder. Choose another name");
   if (is_there(folder / kStaging / kDelivering)) return;
   if (is_there(folder / kIndex)) {
     files_of_library(folder);
@@ -69,7 +69,7 @@ void require_target(const fs::path& folder, bool replace) {
     if (is_there(folder / name))
       fail(ErrorCode::bad_file, {(folder / name).string()},
            "this file already exists and is not a part of a library of "
-           "walks; move the file away or choose another folder");
+           "walks. Move the file away or choose another folder");
 }
 
 }  // namespace
@@ -126,7 +126,7 @@ void LibraryFolder::deliver(const Json& index, const std::vector<std::string>& p
           std::find(previous.begin(), previous.end(), path) == previous.end())
         fail(ErrorCode::bad_file, (target_ / path).string() +
                                       ": this file already exists and is not a part of the old "
-                                      "library; move the file away or choose another folder");
+                                      "library. Move the file away or choose another folder");
   write_file(staging_ / kIndex, index.dump(1) + "\n");
   write_file(staging_ / kDelivering, "true\n");
   try {

@@ -135,7 +135,7 @@ struct CaseRunner::Watch {
   }
   std::string reason() const {
     return "the stage '" + exceeded + "' did not end within " + text::brief(limit) +
-           " s of processor time; a larger --case-limit allows more time";
+           " s of processor time. A larger --case-limit allows more time";
   }
 };
 
@@ -353,7 +353,7 @@ std::shared_ptr<CaseRunner::Prepared> CaseRunner::prepared(const Settings& setti
       const std::string word = word_of(settings, "pattern");
       if (word.empty())
         fail(ErrorCode::bad_pattern, study_->file().string() +
-                                         ": /sweep: this case has no setting 'pattern'; name a "
+                                         ": /sweep: this case has no setting 'pattern'. Name a "
                                          "pattern in the case or in /sweep/settings");
       Pattern pattern =
           set.empty() ? patterns_.at(word) : read_given_pattern(pattern_file(word), set);
@@ -620,7 +620,7 @@ CaseRow CaseRunner::run(long number, const Progress& progress) const {
     if (watch.exceeded.empty()) throw;
     row.error = watch.reason();
   } catch (const std::bad_alloc&) {
-    row.error = "there was not enough memory; use fewer threads or a machine with more memory";
+    row.error = "there was not enough memory. Use fewer threads or a machine with more memory";
   }
   row.figures.resize(columns_.size());
   return row;

@@ -121,7 +121,7 @@ std::vector<Expectation> judge_expectations(const ResultsDatabase& results,
       if (why.starts_with("no such column"))
         hint =
             text::suggestion(why.substr(column + 2), names) +
-            "; the names are the columns of the view \"summary\" (docs/formats.md, Sweep results)";
+            ". The names are the columns of the view \"summary\" (docs/formats.md, Sweep results)";
       fail(ErrorCode::usage, "--expect '" + text + "': " + why + hint);
     }
     expectation.met = !value.empty() && !value[0][0].empty() && std::atof(value[0][0].c_str()) != 0;

@@ -36,7 +36,8 @@ constexpr const char* kSealRow = "rows_sha256";
 /// rest.
 constexpr int kLongestText = 65 << 20;
 constexpr const char* kNoResults =
-    "this file does not contain results of ayumi sweep, or the file is damaged; choose another name";
+    "this file does not contain results of ayumi sweep, or the file is damaged. Choose another "
+    "name";
 /// Time for which a reader waits for a writer [ms]. Chosen: a commit takes a few ms.
 constexpr int kLockPatience = 10000;
 
@@ -248,13 +249,13 @@ void ResultsDatabase::complain(const std::string& doing) const {
   std::string why = database_ ? said_by(database_) : "out of memory";
   if (code == SQLITE_FULL || unwritten)
     why =
-        "the disk is full, or the system does not let the file grow; what was written before is "
+        "the disk is full, or the system does not let the file grow. What was written before is "
         "kept. Make room "
         "and run the same command again to go on";
   else if (code == SQLITE_NOTADB || code == SQLITE_CORRUPT)
     why = kNoResults;
   else if (code == SQLITE_BUSY)
-    why = "another program is writing to this file; wait until that program has ended";
+    why = "another program is writing to this file. Wait until that program has ended";
   fail(ErrorCode::bad_file, {file_.string()}, doing + ": " + why);
 }
 
@@ -275,7 +276,7 @@ void ResultsDatabase::open(int flags) {
 ResultsDatabase::ResultsDatabase(const fs::path& file, Mode mode) : file_(file) {
   if (!fs::exists(file))
     fail(ErrorCode::bad_file, {file.string()},
-         "this file does not exist; name a file that ayumi sweep wrote");
+         "this file does not exist. Name a file that ayumi sweep wrote");
   if (!fs::is_regular_file(fs::symlink_status(file)))
     fail(ErrorCode::bad_file, {file.string()}, "this is not a regular file");
   // The file is also opened in this way for reading, because the last user who could write removes
@@ -366,13 +367,13 @@ void ResultsDatabase::require_made_by(const std::string& sql) const {
     if (!contains(found, [&](const auto& each) { return each == own; }))
       fail(ErrorCode::bad_file, {file_.string()},
            "the " + own[2] + " '" + own[0] +
-               "' is not as ayumi sweep makes it; choose another name");
+               "' is not as ayumi sweep makes it. Choose another name");
   for (const auto& each : found)
     if (!contains(wanted, [&](const auto& own) { return own == each; }) &&
         contains(wanted, [&](const auto& own) { return own[0] == each[0] || own[0] == each[1]; }))
       fail(ErrorCode::bad_file, {file_.string()},
            "ayumi sweep did not make the " + each[2] + " '" + each[0] + "' of the table '" +
-               each[1] + "'; remove it, or choose another name");
+               each[1] + "'. Remove it, or choose another name");
 }
 
 void ResultsDatabase::read_head() {
@@ -383,13 +384,13 @@ void ResultsDatabase::read_head() {
   };
   if (single("PRAGMA application_id") != kApplication)
     fail(ErrorCode::bad_file, {file_.string()},
-         "this file does not contain results of ayumi sweep; choose another name");
+         "this file does not contain results of ayumi sweep. Choose another name");
   const long format = single("PRAGMA user_version");
   if (format != kDatabaseFormat)
     fail(ErrorCode::bad_file, {file_.string()},
          "the results have version " + std::to_string(format) +
              " of the format, but this program has " + std::to_string(kDatabaseFormat) +
-             "; use the version of Ayumi that wrote the results, or run the study again with "
+             ". Use the version of Ayumi that wrote the results, or run the study again with "
              "--force");
   require_made_by(kHeadTables);
   const auto rows = [&](const std::string& sql, const auto& take) {
@@ -452,7 +453,7 @@ void ResultsDatabase::require_study(const SweepHead& asked, const std::string& r
     differs = "the inputs are different";
   if (!differs.empty())
     fail(ErrorCode::bad_file, {file_.string()},
-         "this file contains the results of another study (" + differs + "); " + remedy);
+         "this file contains the results of another study (" + differs + "). " + remedy);
 }
 
 RowSeal ResultsDatabase::seal_without_rows() const { return RowSeal(head_.fingerprint()); }
@@ -493,7 +494,7 @@ void ResultsDatabase::require_unchanged() const {
   if (!(found == recorded_seal()))
     fail(ErrorCode::bad_file, {file_.string()},
          "the results have changed since ayumi sweep wrote them (their SHA-256 differs from "
-         "\"rows_sha256\" of the table 'about'); leave this file out, or run the study again with "
+         "\"rows_sha256\" of the table 'about'). Leave this file out, or run the study again with "
          "--force");
 }
 
@@ -608,9 +609,9 @@ long ResultsDatabase::merge(const fs::path& other) {
   {
     const ResultsDatabase theirs(other, Mode::read);
     if (theirs.head().fingerprint() != head_.fingerprint()) {
-      theirs.require_study(head_, "leave this file out");
+      theirs.require_study(head_, "Leave this file out");
       fail(ErrorCode::bad_file, {other.string()},
-           "this file contains the results of another study; leave this file out");
+           "this file contains the results of another study. Leave this file out");
     }
   }
   execute("ATTACH DATABASE " + sql_text(other.string()) + " AS theirs");
@@ -637,7 +638,7 @@ long ResultsDatabase::merge(const fs::path& other) {
   if (different.step())
     fail(ErrorCode::bad_file, {other.string()},
          "the result of case " + std::to_string(different.integer(0)) +
-             " differs from the result in " + file_.string() + "; nothing of " + other.string() +
+             " differs from the result in " + file_.string() + ". Nothing of " + other.string() +
              " was merged");
   if (!different.done()) complain("the files cannot be compared");
   different.reset();
@@ -684,7 +685,7 @@ void ResultsDatabase::write_csv(const fs::path& file) const {
     if (!stream)
       fail(ErrorCode::bad_file, {file.string()},
            std::string("the table cannot be written: ") + std::strerror(errno) +
-               "; make room and try again");
+               ". Make room and try again");
   };
   csv([&](const std::string& line) {
     stream << line;

@@ -67,7 +67,7 @@ class ResultsDatabase {
   /// belong to this study.
   void require_study(
       const SweepHead& head,
-      const std::string& remedy = "choose another name, or give --force to begin again") const;
+      const std::string& remedy = "Choose another name, or give --force to begin again") const;
 
   /// Throws Error(bad_file) if a row was changed, added or removed by anything but this class.
   void require_unchanged() const;

@@ -187,8 +187,8 @@ State read_state(const fs::path& folder) {
       state.arrays.push_back({array.at("number"), array.at("job")});
   } catch (const SlurmJson::exception&) {
     fail(ErrorCode::bad_file, {file.string()},
-         "this file does not contain the state of a sweep on Slurm, so the sweep cannot continue; "
-         "cancel the jobs of the sweep that still run, and remove the folder of this file");
+         "this file does not contain the state of a sweep on Slurm, so the sweep cannot continue. "
+         "Cancel the jobs of the sweep that still run, and remove the folder of this file");
   }
   return state;
 }
@@ -376,7 +376,7 @@ class Engine {
     } catch (const Interrupted&) {
       if (!out_.empty())
         context_.print("  " + text::counted(static_cast<long>(out_.size()), "task") +
-                       " of Slurm still run; run the same command again to collect their results, "
+                       " of Slurm still run. Run the same command again to collect their results, "
                        "or end these tasks with: scancel --name=" +
                        state_.name + "\n");
       throw;
@@ -390,7 +390,7 @@ class Engine {
                " (the first is case " + std::to_string(first - lost.begin()) + ") were lost " +
                text::counted(static_cast<long>(options_.attempts), "time") +
                (why_lost_.empty() ? "" : " (" + why_lost_ + ")") +
-               "; all other results are kept. The output of the tasks is in " + folder_.string() +
+               ". All other results are kept. The output of the tasks is in " + folder_.string() +
                ". Run the same command again to go on");
     // Copies of tasks that counted as lost are no longer needed.
     run_command({"scancel", "--name=" + state_.name});
@@ -439,7 +439,7 @@ class Engine {
                         limit > 0 ? std::min(limit, options_.task_seconds) : options_.task_seconds);
     context_.print("  pilot run: " + text::brief(pilot.useful / each, 3) +
                    " s of simulation for a case, " + text::brief(setup, 3) +
-                   " s for the start of a task; each task gets " + text::counted(chunk_, "case") +
+                   " s for the start of a task. Each task gets " + text::counted(chunk_, "case") +
                    "\n");
   }
 
@@ -471,7 +471,7 @@ class Engine {
       // submission, the user waits for an answer.
       if (out_.empty() && (!submitted_ || seconds_since(*refused_since_) > kLongestSilence))
         fail(ErrorCode::bad_file, "--engine slurm: sbatch refused the job: " + why +
-                                      "; the results so far are kept in " +
+                                      ". The results so far are kept in " +
                                       results_.file().string());
       return;
     }
@@ -669,8 +669,8 @@ class Engine {
           text::counted(running, "task") + " running, " +
           std::to_string(static_cast<long>(out_.size() + pending_.size()) - running) + " waiting";
       if (running == 0 && !reason.empty() && reason != "None") words += " (" + reason + ")";
-      if (refused_) words += "; sbatch: " + refusal_;
-      if (!trouble.empty()) words += "; " + trouble;
+      if (refused_) words += ". Answer of sbatch: " + refusal_;
+      if (!trouble.empty()) words += ". " + trouble;
       pause(std::clamp(seconds_since(begin) / 20, kShortestPoll, kLongestPoll),
             {"slurm", double(total_ - waiting) / double(std::max(1L, total_)), words});
     }
@@ -709,7 +709,7 @@ CaseRanges read_case_ranges(const std::string& text, long count) {
   CaseRanges ranges;
   const auto refuse = [&] {
     fail(ErrorCode::usage, "--cases: '" + text::printable(text.substr(0, 60)) +
-                               "' is not a list of cases; write numbers from 0 to " +
+                               "' is not a list of cases. Write numbers from 0 to " +
                                std::to_string(count - 1) + " in rising order, such as 0-99,120");
   };
   const char* at = text.data();
@@ -783,12 +783,12 @@ void require_slurm() {
   if (found.exit_code == 0) return;
   if (found.exit_code < 0)
     fail(ErrorCode::bad_file, "--engine slurm: the program sbatch cannot be started (" + found.err +
-                                  "); install slurm-client on this machine, or leave --engine out");
+                                  "). Install slurm-client on this machine, or leave --engine out");
   fail(ErrorCode::bad_file,
        "--engine slurm: sbatch fails on this machine (" +
            (found.err.empty() ? "exit code " + std::to_string(found.exit_code)
                               : one_line(found.err)) +
-           "); correct the configuration of Slurm (slurm.conf, or the variable SLURM_CONF), or "
+           "). Correct the configuration of Slurm (slurm.conf, or the variable SLURM_CONF), or "
            "leave --engine out");
 }
 

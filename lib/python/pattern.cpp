@@ -42,9 +42,9 @@ void bind_generators(py::module_& m) {
       py::arg("double_support") = py::none(), py::arg("lift") = py::none(),
       py::arg("cog_height") = py::none(), py::arg("turn") = py::none(),
       py::arg("side") = py::none(), py::arg("rise") = py::none(),
-      "A walk from rest to rest. stride, lift, cog_height, side and rise (of a stair) in m, period "
-      "in s, double_support as a share of the period, turn in rad per step, left positive. "
-      "Arguments that are not given follow from the size of the robot.");
+      "A walk from rest to rest. stride, lift, cog_height, side and rise (of a stair) are in m, "
+      "and period is in s. double_support is a share of the period. turn is in rad per step; left "
+      "is positive. Arguments that are not given follow from the size of the robot.");
   m.def(
       "stand_pattern",
       [](const RobotModel& robot, double duration) {

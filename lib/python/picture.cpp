@@ -84,8 +84,8 @@ void bind_picture(py::module_& m) {
       py::arg("robot"), py::kw_only(), py::arg("posture") = "home", py::arg("theta") = py::none(),
       py::arg("view") = "iso", py::arg("marks") = true,
       "The robot on the ground, in a named posture or at the joint angles `theta` [rad, m], shape "
-      "(dof,), as the bytes of a PNG file. `marks`: with the outlines of the soles, the axes of "
-      "the joints and an arrow in the direction that the robot faces.");
+      "(dof,), as the bytes of a PNG file. With `marks`, the picture shows the outlines of the "
+      "soles, the axes of the joints and an arrow in the direction that the robot faces.");
   m.def(
       "picture",
       [](const RobotModel& robot, const Log& log, double at, int width, int height,

@@ -50,8 +50,9 @@ void bind_import(py::module_& m) {
             write_imported(path, written);
           },
           py::arg("path"),
-          "Writes the pattern, its table beside it, and, for formats whose files can be exported "
-          "unchanged, a copy of the file; all of them or none.");
+          "Writes the pattern and its table. For formats whose files can be exported unchanged, it "
+          "also "
+          "writes a copy of the file. It writes all of these files, or none.");
   m.def("motion_formats", &read_format_names, "Names of the formats that import_motion() reads.");
   m.def(
       "import_motion",
@@ -88,19 +89,20 @@ void bind_import(py::module_& m) {
       py::arg("commands") = false, py::arg("measured_at") = "", py::arg("smooth") = py::none(),
       py::arg("ground") = false, py::arg("ramp") = 0.0, py::arg("contact_height") = py::none(),
       py::arg("contact_speed") = py::none(), py::arg("contact_load") = py::none(),
-      "Reads a motion of another program or robot, as `ayumi import` does. The format follows from "
-      "the content unless `format` names one of motion_formats(). `rate` [1/s]: rows per second, "
-      "if the rows have no times; `degrees`: angles of a file that does not state their unit are "
-      "in degrees; "
-      "`order`: the columns are the joints of the robot, in the order of the robot; "
-      "`joints`: names of the joint columns; `motion`: name or number of the motion, if the file "
-      "has several; "
-      "`commands`: the angles are servo targets; "
-      "`measured_at`: 'encoder' for angles of the encoders of the robot, to which its offsets are "
-      "added, 'joint' for angles of the joints, '' if the format decides; "
-      "`smooth`: largest change for smoothing [deg]; `ground`: the soles that carry the robot are "
-      "put on the ground; `ramp`: time from rest to the speed of a recording that was cut [s]. A "
-      "sole carries "
+      "Reads a motion of another program or robot, as `ayumi import` does. `format` is one of "
+      "motion_formats(); without it, the format follows from the content. "
+      "`rate` [1/s] is the number of rows per second, for rows without times. "
+      "With `degrees`, angles without a unit in the file are in degrees. "
+      "With `order`, the columns are the joints of the robot, in the order of the robot. "
+      "`joints` are the names of the joint columns. "
+      "`motion` is the name or the number of the motion in a file with several motions. "
+      "With `commands`, the angles are servo targets. "
+      "`measured_at` is 'encoder' for angles of the encoders, to which the offsets of the robot "
+      "are added, 'joint' for angles of the joints, or '' if the format decides. "
+      "`smooth` is the largest change of an angle by smoothing [deg]. "
+      "With `ground`, the soles that carry the robot are put on the ground. "
+      "`ramp` is the time between rest and the speed of a recording that begins or ends in motion "
+      "[s]. A sole carries "
       "the robot when it is at most `contact_height` [m] above the lowest one, slower than "
       "`contact_speed` [m/s], and the motion of the COG needs at least `contact_load` times the "
       "weight as ground force.");
@@ -245,13 +247,14 @@ void bind_identify(py::module_& m) {
       "The servo constants with which the simulated servos come nearest to what was measured. "
       "`command` and `measured` are files, or (dt, angles) with the time between two rows [s] and "
       "an array of angles [rad, m], shape (n, dof). `command` are angles of the encoders, as the "
-      "robot received them; `measured_at`: 'encoder' if its encoders measured the angles, 'joint' "
-      "if instruments at the joints did. Only these show the offsets of the encoders. `loads` is a "
-      "file of load cells; `per_type`: "
-      "one set for all joints of one motor type; `stand`: 'feet', 'fixed' (the root is held "
-      "upright) or 'auto'; `rate` [1/s] and `degrees` apply to files that do not state them; "
-      "`longest_lag` [s]: a recording whose angles are later than this is refused (0: 30 ms or "
-      "twice the lag of the slowest servo, whichever is larger).");
+      "robot received them. `measured_at` is 'encoder' if the encoders of the robot measured the "
+      "angles, or 'joint' if instruments at the joints measured them; only such instruments show "
+      "the offsets of the encoders. `loads` is a file of load cells. With `per_type`, all joints "
+      "of one motor type get the same constants. `stand` is 'feet', 'fixed' (the root is held "
+      "upright) or 'auto'. `rate` [1/s] and `degrees` apply to files that do not state their rate "
+      "or their unit. A recording whose angles are later than `longest_lag` [s] is refused; 0 "
+      "means "
+      "30 ms or twice the lag of the slowest servo, whichever is larger.");
 }
 
 }  // namespace

@@ -130,7 +130,7 @@ void bind_robot(py::module_& m) {
                              "Names of the actuator profiles.")
       .def("actuators", &RobotModel::limits, py::arg("profile") = "",
            py::return_value_policy::reference_internal,
-           "Limits of the motors of a profile; '' is the default one.")
+           "Limits of the motors of a profile; '' means the default profile.")
       .def("posture", &RobotModel::posture, py::arg("name") = "home",
            "Joint angles of a named posture [rad, m], shape (dof,).")
       .def("rest_state", &RobotModel::rest_state, py::arg("posture") = "home",
@@ -185,8 +185,8 @@ void bind_robot(py::module_& m) {
         });
       },
       py::arg("name"), py::arg("path") = std::vector<Path>(), py::arg("meshes") = true,
-      "The robot of this name, folder, sidecar or URDF. `meshes`: also read the meshes, which only "
-      "pictures need.");
+      "The robot of this name, folder, sidecar or URDF. With `meshes`, the meshes are read too; "
+      "only pictures need them.");
 }
 
 }  // namespace ayumi::python

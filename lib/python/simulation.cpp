@@ -372,21 +372,20 @@ void bind_simulation(py::module_& m) {
       py::arg("noise") = false, py::arg("true_state") = false, py::arg("substeps") = 1,
       py::arg("seed") = 1, py::arg("plant") = "ayumi", py::arg("targets") = py::none(),
       py::arg("allow_unstable") = false, py::arg("progress") = py::none(),
-      "The closed loop of plant, sensors and controller. `controller`: a name of controllers(), or "
-      "None for the controller of the pattern; `gains`: values by name. `scenario`: False for no "
-      "disturbances, or a pattern "
-      "file whose scenario replaces that of the pattern. `noise`: sensors with noise, bias and "
-      "latency. `true_state`: the controller gets the true state. `substeps`: steps of the "
-      "integrator per tick. `plant`: 'ayumi', 'mujoco', or a function (robot, profile, world) that "
-      "returns an "
-      "object with `state`, `set_state(state)` and `step(targets, input, dt)`, as Plant has them. "
-      "`targets`: a function (t, estimate, plan, targets) that returns the servo targets as angles "
-      "of the joints [rad, m], shape (dof,), in place of those of the controller; with "
-      "controller='none' it is the whole "
-      "controller. A plant or a controller in Python is called in every tick and makes the run "
-      "several times slower. `progress`: a function (stage, fraction, detail); the run stops when "
-      "it "
-      "returns False.");
+      "Simulates the closed loop of plant, sensors and controller. `controller` is a name of "
+      "controllers(), or None for the controller of the pattern. `gains` are values of gains by "
+      "name. `scenario` is False for no disturbances, or a pattern file whose scenario replaces "
+      "the "
+      "scenario of the pattern. With `noise`, the sensors have noise, bias and latency. With "
+      "`true_state`, the controller gets the true state. `substeps` is the number of steps of the "
+      "integrator in a tick. `plant` is 'ayumi', 'mujoco', or a function (robot, profile, world) "
+      "that returns an object with `state`, `set_state(state)` and `step(targets, input, dt)`, as "
+      "Plant has them. `targets` is a function (t, estimate, plan, targets). It returns the servo "
+      "targets as angles of the joints [rad, m], shape (dof,), which replace the targets of the "
+      "controller; with controller='none', the function is the whole controller. A plant or a "
+      "controller in Python is called in every tick and makes the run several times slower. "
+      "`progress` is a function (stage, fraction, detail); the run stops if this function returns "
+      "False.");
 }
 
 }  // namespace ayumi::python

@@ -149,12 +149,14 @@ void bind_push(py::module_& m) {
       py::arg("duration") = PushOptions().duration, py::arg("seed") = 1, py::arg("threads") = 0,
       py::arg("progress") = py::none(),
       "The largest push that the robot survives, by phase of the gait and direction, in open loop "
-      "and with each controller (the controller of the pattern when none is named). `times` [s] in "
-      "place of the "
-      "default phases; `step`: resolution of the search, and `cap`: largest push tried, both as "
-      "multiples of the capture bound; `replicas`: number of small variations of every push, all "
-      "of which the robot must survive; `duration` of a push [s]; "
-      "`threads`: 0 for all; the results do not depend on this number.");
+      "and with each controller (the controller of the pattern when none is named). `times` [s] "
+      "replace the default phases. `step` is the resolution of the search, and `cap` is the "
+      "largest "
+      "push tried, both as multiples of the capture bound. `replicas` is the number of small "
+      "variations of every push; the robot must survive all of them. `duration` is the duration of "
+      "a "
+      "push [s]. `threads` is the number of threads, and 0 means all; the results do not depend on "
+      "this number.");
 }
 
 void bind_gains(py::module_& m) {
@@ -202,10 +204,10 @@ void bind_gains(py::module_& m) {
       py::arg("absorb") = py::none(), py::arg("return_time") = py::none(),
       py::arg("zmp_filter") = py::none(), py::arg("forget") = py::none(), py::arg("set") = Gains(),
       py::arg("latency") = py::none(),
-      "Gains of DTAD: two `poles` of the COG [1/s], the share of a ZMP error that is absorbed at "
-      "once, the times [s] of the return to the command and of the filter of the ZMP, and the time "
-      "[s] until a lasting offset of the ZMP is accepted; `set` gives gains by name, and `latency` "
-      "[s] is the latency of the sensors.");
+      "Gains of DTAD. They follow from two `poles` of the COG [1/s], the share of a ZMP error that "
+      "is absorbed at once, the times [s] of the return to the command and of the filter of the "
+      "ZMP, and the time [s] until a lasting offset of the ZMP is accepted. `set` gives gains by "
+      "name. `latency` [s] is the latency of the sensors.");
 
   py::class_<TuneFigures>(m, "TuneFigures", "The objective of tune() and its parts.")
       .def_readonly("objective", &TuneFigures::objective, "Dimensionless, smaller is better.")
@@ -248,8 +250,10 @@ void bind_gains(py::module_& m) {
       py::arg("level") = TuneOptions().level, py::arg("gains") = py::none(),
       py::arg("rounds") = TuneOptions().rounds, py::arg("seed") = 1, py::arg("threads") = 0,
       py::arg("progress") = py::none(),
-      "Searches for better gains of DTAD. `start`: gains to begin with; `times` of the pushes [s]; "
-      "`level` of a push in capture bounds; `gains`: names of the gains that are changed.");
+      "Searches for better gains of DTAD. `start` are the gains to begin with, and `times` are the "
+      "times of the pushes [s]. "
+      "`level` is the size of a push as a multiple of the capture bound. `gains` are the names of "
+      "the gains that are changed.");
 }
 
 void bind_local_pace(py::module_& m) {
@@ -294,9 +298,10 @@ void bind_local_pace(py::module_& m) {
       py::arg("margin") = py::none(), py::arg("keep_pauses") = false,
       py::arg("progress") = py::none(),
       "The fastest timing along the motion: the motion slows down only where a limit "
-      "binds. The result names its table `table`; `margin` is an upper limit [m] of the distance "
-      "that the ZMP has to keep from the edge of the support; "
-      "with `keep_pauses`, spans in which nothing moves keep their length.");
+      "binds. `table` is the name of the table in the result. `margin` [m] is a distance from the "
+      "edge of "
+      "the support that is enough for the ZMP. With `keep_pauses`, time spans in which nothing "
+      "moves keep their duration.");
 }
 
 void bind_pace(py::module_& m) {

@@ -60,7 +60,8 @@ void bind_table(py::module_& m) {
                                  : reference_csv(t.data(), t.data().caution));
           },
           py::call_guard<py::gil_scoped_release>(), py::arg("path"),
-          "Writes CSV, or JSON where the name ends in .json; whole or not at all.")
+          "Writes the table as CSV, or as JSON if the name ends in .json. The file is written "
+          "whole or not at all.")
       .def(
           "resampled",
           [](const Table& t, double dt) {
@@ -140,7 +141,8 @@ void bind_table(py::module_& m) {
       py::arg("ramp") = SafetyOptions().ramp, py::arg("hold") = SafetyOptions().hold,
       py::arg("start") = SafetyOptions().from,
       "Adds an approach of `ramp` s from the posture `start` before a table and a hold of `hold` s "
-      "after it, and judges what the servos would receive; with a log, also the torques of that "
+      "after it, and judges what the servos would receive. With a log, it also judges the torques "
+      "of that "
       "run.");
 }
 

@@ -182,9 +182,10 @@ void bind_repair(py::module_& m) {
       py::arg("max_iterations") = py::none(), py::arg("progress") = py::none(),
       "The nearest consistent motion, which bears the payloads of the scenario. Locked joints, "
       "feet ('left', 'right') and windows (begin, "
-      "end) [s] do not move; `weights` are factors on the cost of a joint; `trust` is 'posture', "
-      "'cog' or 'zmp'; `zmp_margin` [m] is the wanted distance of the ZMP from the edge. An "
-      "argument that is not given has the value in the pattern.");
+      "end) [s] do not move. `weights` are factors on the cost of a change of a joint. `trust` is "
+      "'posture', "
+      "'cog' or 'zmp'. `zmp_margin` [m] is the wanted distance of the ZMP from the edge of the "
+      "support. An argument that is not given has the value in the pattern.");
 }
 
 }  // namespace
@@ -236,9 +237,9 @@ void bind_task(py::module_& m) {
       py::arg("profile") = "", py::arg("robot") = "", py::arg("path") = std::vector<Path>(),
       py::arg("meshes") = true, py::arg("progress") = py::none(),
       "Reads a pattern (a file, or a Pattern) and its robot, and samples the motion. `set` gives "
-      "values to declared parameters of a file, `robot` is a name or path in place of the "
-      "pattern's, `path` lists folders with robots. `meshes`: also read the meshes, which only "
-      "pictures need.");
+      "values to parameters that a file declares. `robot` is the name or path of a robot that "
+      "replaces the robot of the pattern. `path` lists folders with robots. With `meshes`, the "
+      "meshes are read too; only pictures need them.");
   m.def(
       "sample",
       [](const Pattern& pattern, const RobotModel& robot, const std::string& profile,

@@ -54,7 +54,9 @@ TEST(CertifyCommand, SameBytesForThreadsAndShards) {
   ASSERT_EQ(one.exit_code, 1) << one.err;
   EXPECT_NE(one.out.find("not certified: "), std::string::npos) << one.out;
   EXPECT_NE(one.out.find("push: size"), std::string::npos);
-  EXPECT_NE(one.out.find("3 distributions; 3 of them are assumed"), std::string::npos) << one.out;
+  EXPECT_NE(one.out.find("3 distributions. The numbers of 3 distributions are assumed"),
+            std::string::npos)
+      << one.out;
   const std::string picture = contents(study.folder / "m.svg");
   EXPECT_NE(picture.find("<svg"), std::string::npos);
   EXPECT_NE(picture.find(": 40 runs, "), std::string::npos) << "of all runs, as its figures";

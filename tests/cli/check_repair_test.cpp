@@ -320,9 +320,9 @@ TEST_F(ChecksOn80Columns, WhatIsConsistentFitsOnOneScreen) {
 TEST_F(ChecksOn80Columns, WhatIsShortenedIsPrintedWithAll) {
   ASSERT_EQ(ayumi({"new", "jump", "-o", "jump.json", "-q"}).exit_code, 0);
   const std::string brief = ayumi({"check", "jump.json", "-q"}).out;
-  EXPECT_TRUE(
-      std::regex_search(brief, std::regex("  shortened; `ayumi check --all` prints everything, "
-                                          "with \\d+ findings\n$")))
+  EXPECT_TRUE(std::regex_search(
+      brief, std::regex("  this answer is shortened. `ayumi check --all` prints everything, "
+                        "with \\d+ findings\n$")))
       << brief;
   EXPECT_EQ(brief.find("where each track comes from"), std::string::npos) << brief;
   const std::string all = ayumi({"check", "jump.json", "-q", "--all"}).out;

@@ -71,7 +71,7 @@ TEST(CompareCommand, NumbersPictureAndReport) {
   EXPECT_EQ(ayumi({"compare", "out", "m.csv", "--plot", "c.svg"}).exit_code, 3);
   const Output none = ayumi({"compare", "out"});
   EXPECT_EQ(none.exit_code, 2);
-  EXPECT_NE(none.err.find("name a recording"), std::string::npos);
+  EXPECT_NE(none.err.find("Name a recording"), std::string::npos);
 }
 
 /// The numbers of the columns whose names begin with `column`, by row.

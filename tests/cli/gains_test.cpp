@@ -32,7 +32,7 @@ TEST(GainsCommand, ValuesOutOfRangeAreRefused) {
       {"=1", "'=1' does not have the form NAME=NUMBER"},
       {"ka=1e999", "the number of 'ka=1e999' is too large or too near to 0"},
       {"ka=1e-400", "the number of 'ka=1e-400' is too large or too near to 0"},
-      {"q=1e160", "'q=1e160' is out of range; the number must be from -1e6 to 1e6"},
+      {"q=1e160", "'q=1e160' is out of range. The number must be from -1e6 to 1e6"},
       {"q=nan", "'q=nan' is out of range"}};
   for (const auto& [word, message] : cases) {
     const Output output = run({"gains", "hoap1", "--gain", word});

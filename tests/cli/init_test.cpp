@@ -161,7 +161,7 @@ TEST(Init, SoftServosGetGains) {
   ASSERT_EQ(ayumi(folder, {"new", "stand", "--robot", "robot6", "-o", "stand.json"}).exit_code, 0);
   const Output run = ayumi(folder, {"simulate", "stand.json"});
   EXPECT_EQ(run.exit_code, 0) << run.out << run.err;
-  EXPECT_NE(init_with("1.5").find("such gains exist if kp and kd of these servos are "),
+  EXPECT_NE(init_with("1.5").find("Such gains exist if kp and kd of these servos are "),
             std::string::npos);
 }
 

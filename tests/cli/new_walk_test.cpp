@@ -115,7 +115,7 @@ TEST(NewWalk, AsideNoFartherThanTheLegsCan) {
   EXPECT_EQ(run_program({"check", "-q", "w.json"}, folder.path()).exit_code, 0);
   const Output beyond = made(folder, {"--steps", "2", "--stride", "0", "--side", "0.07"});
   EXPECT_EQ(beyond.exit_code, 3) << beyond.out;
-  EXPECT_NE(beyond.err.find("; --side " + fits + " is the most that the legs can reach"),
+  EXPECT_NE(beyond.err.find(". --side " + fits + " is the most that the legs can reach"),
             std::string::npos)
       << beyond.err;
 }

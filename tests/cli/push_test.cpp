@@ -45,7 +45,8 @@ TEST(PushCommand, GoesOnFromItsResultsForAnyNumberOfThreads) {
   const Study study;
   const Output first = study.run(study.command);
   ASSERT_EQ(first.exit_code, 0) << first.err;
-  EXPECT_NE(first.out.find("during the pattern, dtad: smallest push limit"), std::string::npos)
+  EXPECT_NE(first.out.find("pushes during the motion, dtad: smallest push limit"),
+            std::string::npos)
       << first.out;
   const std::string whole = contents(study.folder / "results.json");
   Json partly = json_of(whole);

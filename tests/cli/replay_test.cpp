@@ -289,7 +289,7 @@ TEST_F(Replay, AForeignMotionInJsonIsPlayed) {
   EXPECT_NE(out.out.find("poppy-move"), std::string::npos) << out.out;
   const Output nameless = ayumi({"replay", "wave.move"});
   EXPECT_EQ(nameless.exit_code, 2) << nameless.err;
-  EXPECT_NE(nameless.err.find("give --robot ROBOT"), std::string::npos) << nameless.err;
+  EXPECT_NE(nameless.err.find("Give --robot ROBOT"), std::string::npos) << nameless.err;
 }
 
 // Standard input has no note, even if there is a file with the name that its note would have.

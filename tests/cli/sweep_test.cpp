@@ -242,7 +242,7 @@ TEST(SweepCommand, MergeNamesTheFilesThatDiffer) {
   seal_anew(s.folder / "b.db");
   const Output merged = s.run({"sweep", "merge", "a.db", "b.db", "-o", "m.db"});
   EXPECT_EQ(merged.exit_code, 3);
-  EXPECT_NE(merged.err.find(" differs from the result in m.db; nothing of b.db was merged"),
+  EXPECT_NE(merged.err.find(" differs from the result in m.db. Nothing of b.db was merged"),
             std::string::npos)
       << merged.err;
   EXPECT_FALSE(fs::exists(s.folder / "m.db"));
@@ -457,7 +457,7 @@ TEST(SweepCommand, OnlyItsOwnTablesAreRead) {
       {"ALTER TABLE cases ADD COLUMN more AS (hex(zeroblob(100000000)))",
        "the table 'cases' is not as"},
       {"CREATE TRIGGER t AFTER INSERT ON cases BEGIN UPDATE cases SET outcome = 'stands'; END",
-       "ayumi sweep did not make the trigger 't' of the table 'cases'; remove it"},
+       "ayumi sweep did not make the trigger 't' of the table 'cases'. Remove it"},
       {"UPDATE axes SET type = 'REAL); CREATE TABLE more (x'", "does not contain results"},
       {"UPDATE about SET value = '-5' WHERE key = 'cases'", "does not contain results"},
       {"UPDATE about SET value = '9223372036854775807' WHERE key = 'cases'",
@@ -574,7 +574,7 @@ TEST(SweepCommand, ALimitOfTimeOfOneCase) {
   EXPECT_NE(limited.out.find("1 stand"), std::string::npos) << limited.out;
   EXPECT_NE(
       limited.out.find("case 1 could not be run: the stage 'simulating' did not end within 0.4 s "
-                       "of processor time; a larger --case-limit allows more time"),
+                       "of processor time. A larger --case-limit allows more time"),
       std::string::npos)
       << limited.out;
 }
@@ -657,7 +657,7 @@ TEST(SweepOnSlurm, AbsentOrRefusing) {
   EXPECT_FALSE(fs::exists(slurm.s.folder / "n.db"));
   write(slurm.s.folder / "refuse", "");
   expect(slurm.slurm("-o r.db --pilot 3"), 3,
-         "sbatch refused the job: sbatch: error: invalid partition specified: nowhere; the results "
+         "sbatch refused the job: sbatch: error: invalid partition specified: nowhere. The results "
          "so far are kept in r.db");
   const Output status = slurm.s.run({"sweep", "status", "r.db", "--json"});
   EXPECT_EQ(json_of(status.out).at("done"), 3);

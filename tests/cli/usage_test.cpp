@@ -99,7 +99,7 @@ TEST_F(Usage, EveryCommandPrintsItsOwnHelp) {
   const Output mistyped = ayumi({"sweep", "report", "--help"});
   EXPECT_EQ(mistyped.exit_code, 2);
   EXPECT_EQ(mistyped.out, "");
-  EXPECT_NE(mistyped.err.find("'report' is neither a file nor a subcommand; the subcommands are "
+  EXPECT_NE(mistyped.err.find("'report' is neither a file nor a subcommand. The subcommands are "
                               "merge, status"),
             std::string::npos)
       << mistyped.err;
@@ -206,7 +206,7 @@ TEST_F(Usage, NewListsItsKinds) {
 TEST_F(Usage, ACommandWithoutItsKindListsTheKinds) {
   EXPECT_NE(ayumi({"new"}).err.find("new: choose one of walk, step, "), std::string::npos);
   const std::string unknown = ayumi({"new", "wlak", "-o", "w.json"}).err;
-  EXPECT_NE(unknown.find("new: unknown kind 'wlak'; choose one of walk, step, "), std::string::npos)
+  EXPECT_NE(unknown.find("new: unknown kind 'wlak'. Choose one of walk, step, "), std::string::npos)
       << unknown;
   EXPECT_NE(unknown.find("did you mean 'walk'?"), std::string::npos) << unknown;
 }
@@ -301,7 +301,7 @@ TEST_F(Usage, AnOptionIsNoValue) {
   for (const std::string option : {"--force", "-q"}) {
     refused({"export", pattern, "-o", option},
             "--out: '" + option +
-                "' is an option, but a value is needed; for a file of this name, write ./" +
+                "' is an option, but a value is needed. For a file of this name, write ./" +
                 option);
     EXPECT_FALSE(fs::exists(folder / option));
   }
@@ -309,20 +309,20 @@ TEST_F(Usage, AnOptionIsNoValue) {
   refused({"simulate", pattern, "--seed", "--quiet"}, "--seed: '--quiet' is an option");
   // Other words may begin with dashes.
   refused({"export", pattern, "-o", "--draft"},
-          "--out: '--draft' looks like an option; for a file of this name, write ./--draft");
+          "--out: '--draft' looks like an option. For a file of this name, write ./--draft");
   fs::copy_file(pattern, folder / "--walk.json");
   EXPECT_EQ(ayumi({"check", "-q", "--", "--walk.json"}).exit_code, 0);
   fs::remove(folder / "--walk.json");
   const Output titled = ayumi({"plot", "no_run", "--title", "--draft--", "-o", "p.svg"});
   EXPECT_NE(titled.err.find("no_run: no such folder"), std::string::npos) << titled.err;
   refused({"simulate", pattern, "-o", "-"},
-          "--out: results are written to files only; for a file named '-', write ./-");
+          "--out: results are written to files only. For a file named '-', write ./-");
 }
 
 TEST_F(Usage, StandardInputCannotBeWatched) {
   const Output output = ayumi({"check", "-", "--watch"});
   EXPECT_EQ(output.exit_code, 2);
-  EXPECT_NE(output.err.find("name a file"), std::string::npos) << output.err;
+  EXPECT_NE(output.err.find("Name a file"), std::string::npos) << output.err;
 }
 
 TEST_F(Usage, GainsThatCannotWorkAreUsageErrors) {

@@ -191,7 +191,7 @@ TEST(GainDesign, GainsOutOfRangeAreRefused) {
       {ControllerKind::preview, {{"k", 1}}, "preview has no gain 'k'"},
       {ControllerKind::dtad, {{"q", 0}}, "q is 0; it must be above 0, because K = 1 + q"},
       {ControllerKind::dtad, {{"k", 2}}, "k and d must be given together"},
-      {ControllerKind::dtad, {{"k", 2}, {"d", 1}, {"q", 1}}, "give either q, or k and d"},
+      {ControllerKind::dtad, {{"k", 2}, {"d", 1}, {"q", 1}}, "Give either q, or k and d"},
       {ControllerKind::dtad, {{"k", 1}, {"d", 1}}, "k = 1, d = 1 never bring the COG back"},
       {ControllerKind::dtad, {{"tau_z", 0}}, "tau_z is 0; it must be above 0"},
       {ControllerKind::dtad, {{"as_printed", 2}}, "as_printed is 2; it must be 0 or 1"},

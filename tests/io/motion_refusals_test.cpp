@@ -107,7 +107,7 @@ TEST(MotionRefusals, RareBodyMotionsAreRead) {
   const std::string notes = notes_of(read);
   for (const char* const note :
        {"frame rate: 100 per second, because the file states none", "sequences left out: Eyes",
-        "positions of several links; those of the first link are read as the root",
+        "positions of several links; Ayumi reads the positions of the first link",
         "quaternion order: none, because the file has roll, pitch and yaw",
         "the ZMP is relative to the root, as the file says"})
     EXPECT_NE(notes.find(note), std::string::npos) << note << "\n" << notes;
@@ -326,9 +326,9 @@ TEST(MotionRefusals, Trajectories) {
        {motion(joints + "        positions: [0, 1, 2]\n        times_from_start: [0, 1]\n"),
         "the motion has 3 positions, but 1 joint at 2 times need 2"},
        {motion(joints + "        positions: [0, nan]\n        times_from_start: [0, 1]\n"),
-        "or they are not finite numbers"},
+        "or some of them are not finite numbers"},
        {motion(joints + "        positions: [[0], [1]]\n        times_from_start: [0, 1]\n"),
-        "one list of all positions is needed, but these are rows"},
+        "the positions must be one list of finite numbers, but here they are rows"},
        {motion(joints + "        positions: [0, 1]\n        times_from_start: [0, x]\n"),
         "the times are not finite numbers"},
        {"play_motion:\n  motions:\n    wave:\n      points:\n        - positions: [0]\n"

@@ -393,7 +393,7 @@ TEST(RobotModel, NamesSolesThatCannotBe) {
   EXPECT_EQ(error_of([](auto& r) { r.soles["left"].damping_time = -1; }),
             "robot.json: /soles/left: damping_time is -1; it cannot be negative");
   EXPECT_EQ(error_of([](auto& r) { r.sensors.force_cells["middle"].resize(1); }),
-            "robot.json: /sensors/force_cells/middle: the robot has no such sole");
+            "robot.json: /sensors/force_cells/middle: the robot has no sole of this name");
   for (const size_t cells : {1, 4})
     EXPECT_EQ(error_of([&](auto& r) { r.sensors.force_cells["left"].resize(cells); }), "no error");
   EXPECT_EQ(error_of([](auto& r) { r.sensors.force_cells["left"].resize(3); }),

@@ -402,8 +402,9 @@ TEST(Loci, ErrorsSayWhatIsWrong) {
   EXPECT_EQ(message_of({}, {}), "plot: there is no run to draw");
   EXPECT_NE(message_of(std::vector<LociRun>(7, {"a", &runs.standing}), {}).find("at most 6"),
             std::string::npos);
-  EXPECT_EQ(message_of(runs.both(), {.begin = 3}),
-            "plot: the times from 3 s to 1 s contain nothing of the runs, which last 1 s");
+  EXPECT_EQ(
+      message_of(runs.both(), {.begin = 3}),
+      "plot: the times from 3 s to 1 s are outside the runs, because the longest run lasts 1 s");
   EXPECT_NE(message_of(runs.both(), {.width = 10}).find("300"), std::string::npos);
   EXPECT_NE(message_of(runs.both(), {.cog = false, .zmp = false, .fz = false}).find("every panel"),
             std::string::npos);
@@ -412,7 +413,7 @@ TEST(Loci, ErrorsSayWhatIsWrong) {
   foreign.joints.front() = "other";
   EXPECT_NE(message_of({{"A", &runs.standing}, {"B", &foreign}}, with_model)
                 .find("run 'B' has " + std::to_string(foreign.joints.size()) +
-                      " joints, but not those of robot"),
+                      " joints, but the robot '"),
             std::string::npos);
   const SimulationLog empty;
   EXPECT_NE(message_of({{"a", &empty}}, {}).find("no samples"), std::string::npos);

@@ -164,12 +164,12 @@ std::string label_of(const CommandSeries& series) {
 }
 
 TEST(PushMap, TheLabelFitsTheMotion) {
-  EXPECT_EQ(label_of(on_one_foot(0.03)), "walking");
-  EXPECT_EQ(label_of(on_one_foot(0)), "during the pattern") << "a kick is no walk";
-  EXPECT_EQ(label_of(on_one_foot(0, true)), "stepping in place");
+  EXPECT_EQ(label_of(on_one_foot(0.03)), "pushes while walking");
+  EXPECT_EQ(label_of(on_one_foot(0)), "pushes during the motion") << "a kick is no walk";
+  EXPECT_EQ(label_of(on_one_foot(0, true)), "pushes while stepping in place");
   CommandSeries still;
   still.samples.resize(2);
-  EXPECT_EQ(label_of(still), "during the pattern");
+  EXPECT_EQ(label_of(still), "pushes during the motion");
 }
 
 }  // namespace

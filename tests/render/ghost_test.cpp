@@ -210,7 +210,7 @@ TEST(Surface, TooFineIsSimplifiedAndSaidSo) {
   coarse.max_triangles = 600;
   const ClipRenderer renderer(model, log, coarse);
   ASSERT_EQ(renderer.notes().size(), 1u);
-  EXPECT_NE(renderer.notes()[0].find("triangles; it is drawn with"), std::string::npos)
+  EXPECT_NE(renderer.notes()[0].find("triangles, but it is drawn with"), std::string::npos)
       << renderer.notes()[0];
   EXPECT_TRUE(ClipRenderer(model, log, bare()).notes().empty());
 }

@@ -96,7 +96,7 @@ TEST(RobotLook, OfAHeavyRobotHasFewTrianglesThatLookTheSame) {
   options.overlay = no_marks();
   const ClipRenderer alone(model, log, options);
   ASSERT_EQ(alone.notes().size(), 1u);
-  EXPECT_NE(alone.notes()[0].find("triangles; it is drawn with"), std::string::npos);
+  EXPECT_NE(alone.notes()[0].find("triangles, but it is drawn with"), std::string::npos);
   options.look = look;
   const Image thin = ClipRenderer(model, log, options).frame(0);
   RobotLook whole;

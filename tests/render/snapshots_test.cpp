@@ -167,10 +167,9 @@ TEST(Strip, NothingAndTooMuchAreRefused) {
   StripOptions wide = small(40);
   wide.columns = 40;
   wide.clip.picture.width = 1000;
-  EXPECT_EQ(
-      error_message([&] { draw_strip(model, log, wide); }, ErrorCode::usage),
-      "a sheet of 40 pictures would have 40000 x 48 pixels; it needs one picture or more, and "
-      "at most 16384 pixels a side");
+  EXPECT_EQ(error_message([&] { draw_strip(model, log, wide); }, ErrorCode::usage),
+            "a sheet of 40 pictures would have 40000 x 48 pixels; a sheet must have at least one "
+            "picture, and at most 16384 pixels on each side");
   StripOptions one = small(0);
   one.one_picture = true;
   EXPECT_THROW(draw_strip(model, log, one), Error);

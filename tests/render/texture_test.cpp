@@ -102,7 +102,7 @@ TEST_F(Textured, AnotherCaseIsFoundAndSaidSo) {
   write_png(folder / "Flag.PNG", flag());
   EXPECT_GT(seen(surface("flag.png"), 0.5, 0.25)[0], 150);
   ASSERT_EQ(notes.size(), 1u);
-  EXPECT_NE(notes[0].find("taken from Flag.PNG, whose name differs in upper and lower case"),
+  EXPECT_NE(notes[0].find("uses Flag.PNG, whose name differs only in upper and lower case"),
             std::string::npos);
 }
 

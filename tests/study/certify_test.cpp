@@ -175,7 +175,7 @@ TEST(UncertainTask, RefusesWhatNothingUsesAndWhatNoRobotCanHave) {
             "study.json: /uncertainty/quantities/0: this quantity has no effect: hoap1 has no link "
             "'l_fot' with a mass; did you mean 'l_foot'?");
   EXPECT_EQ(message(R"("factors": [{"name": "heat", "source": "t"}])"),
-            "study.json: /uncertainty/factors/0: no quantity uses the factor 'heat'; name it in a "
+            "study.json: /uncertainty/factors/0: no quantity uses the factor 'heat'. Name it in a "
             "quantity, or leave it out");
   const StandingTask negative(
       R"("quantities": [{"what": "mass", "normal": [0, 1], "source": "t"}])");
@@ -209,7 +209,7 @@ TEST(UncertainTask, RefusesPushesThatHaveNoEffectAndValuesInAWrongUnit) {
               StandingTask t(of_push(R"("size": 1, "time": 0.1, "on":
       {"choice": ["cog", "trunk", "l_fot"], "source": "t"})"));
             }),
-            "study.json: /uncertainty/pushes/0/on: hoap1 has no link 'l_fot'; a push acts on a "
+            "study.json: /uncertainty/pushes/0/on: hoap1 has no link 'l_fot'. A push acts on a "
             "link, on \"trunk\" or on \"cog\"; did you mean 'l_foot'?");
   const auto message = [](const std::string& members) {
     const StandingTask t(members);
@@ -225,8 +225,8 @@ TEST(UncertainTask, RefusesPushesThatHaveNoEffectAndValuesInAWrongUnit) {
   const auto of_kind = [](const std::string& what) {
     return R"("quantities": [{"what": ")" + what + R"(", "choice": [4], "source": "t"}])";
   };
-  expect(of_kind("servo_delay"), "the largest value allowed is 0.1; check the unit");
-  expect(of_kind("sensor_latency"), "the largest value allowed is 1; check the unit");
+  expect(of_kind("servo_delay"), "the largest value allowed is 0.1. Check the unit");
+  expect(of_kind("sensor_latency"), "the largest value allowed is 1. Check the unit");
 }
 
 // The law knows the zeros of the robot's file, and not those by which an uncertain unit differs

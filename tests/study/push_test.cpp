@@ -128,7 +128,7 @@ TEST(Push, RefusesTimesOutsideThePattern) {
     push_limits(stand.model, stand.series, stand.options);
     FAIL();
   } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("a push at 5 s is not possible; give a time from"),
+    EXPECT_NE(std::string(error.what()).find("a push at 5 s is not possible. Give a time from"),
               std::string::npos)
         << error.what();
   }
@@ -161,7 +161,7 @@ TEST(Push, RefusesStudiesThatCannotBeDone) {
   EXPECT_EQ(refused([](Stand& s) { s.options.replicas = -1; }),
             "push: the number of variations is -1; it must be from 0 to 100");
   EXPECT_EQ(refused([](Stand& s) { s.series.samples.clear(); }),
-            "the motion has no samples; sample a pattern first");
+            "the motion has no samples. Sample a pattern first");
   EXPECT_NE(refused([](Stand& s) { s.options.phases = {{"late", 0.99, false}}; }), "no error");
 }
 
@@ -176,7 +176,7 @@ TEST(Tune, RefusesSearchesThatCannotBeDone) {
                                ErrorCode::usage);
   };
   EXPECT_EQ(refused([](TuneOptions& o) { o.simulate.controller.type = ControllerKind::viip; }),
-            "tune: controller 'viip' has no gains to tune; use dtad");
+            "tune: controller 'viip' has no gains to tune. Use dtad");
   EXPECT_EQ(refused([](TuneOptions& o) { o.directions = 0; }),
             "tune: the number of directions is 0; it must be from 1 to 360");
   EXPECT_EQ(refused([](TuneOptions& o) { o.level = 0; }),

@@ -51,7 +51,7 @@ TEST(SequentialTest, GivesUpWhenItIsHopeless) {
   std::vector<bool> one(299, false);
   one[41] = true;
   EXPECT_EQ(short_test.outcome(one).runs, 42);
-  EXPECT_NE(error_message([] { SequentialTest(0.01, 0.95, 298); }).find("give 299 or more"),
+  EXPECT_NE(error_message([] { SequentialTest(0.01, 0.95, 298); }).find("Give 299 or more"),
             std::string::npos);
 }
 

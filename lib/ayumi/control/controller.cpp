@@ -39,7 +39,7 @@ Controller::Law Controller::first_law() {
   check_controller(*model_, spec_);
   if (spec_.type.kind == ControllerKind::viip && series_->viip.empty())
     fail(ErrorCode::bad_pattern, "controller " + name_of(spec_.type) +
-                                     ": the pattern has no phase with \"viip\" goals; add such a "
+                                     ": the pattern has no phase with \"viip\" goals. Add such a "
                                      "phase, or use the controller 'dtad'");
   Eigen::MatrixXd lead;
   const bool as_they_are = spec_.type == ControllerKind::none && series_->targets.cols() > 0;

@@ -51,7 +51,7 @@ PreviewGains preview_gains(double tick, double effort, double horizon) {
   if (!found)
     fail(ErrorCode::usage, "preview control: no gains can be computed for the effort " +
                                text::brief(effort) + " and the tick " + text::brief(tick) +
-                               "; choose an effort nearer to the default");
+                               ". Choose an effort nearer to the default");
   Eigen::VectorXcd poles = *found;
   std::sort(poles.begin(), poles.end(),
             [](const auto& a, const auto& b) { return std::norm(a) > std::norm(b); });

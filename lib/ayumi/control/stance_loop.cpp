@@ -237,7 +237,7 @@ std::vector<LoopModel> stance_loops(const RobotModel& model, const ActuatorLimit
       if (servo.kp <= 0)
         fail(ErrorCode::bad_model,
              model.name() + ": joint " + model.dofs()[static_cast<size_t>(j)].name +
-                 " needs a servo with kp above 0; state kp of this joint in the sidecar");
+                 " needs a servo with kp above 0. State kp of this joint in the sidecar");
     }
   like.delay = model.description().sensors.oldest(tick) + servo_delay;
   std::vector<LoopModel> loops;

@@ -27,7 +27,7 @@ const kernels::Kernels* kernels_for(InstructionSet set) {
   if (set == InstructionSet::plain) return &kernels::plain_kernels();
   if (set == InstructionSet::avx2 && !avx2_where_it_runs())
     fail(ErrorCode::usage,
-         "this program or this processor has no AVX2 instructions; choose the instruction set best "
+         "this program or this processor has no AVX2 instructions. Choose the instruction set best "
          "or plain");
   return &kernels::best_kernels();
 }

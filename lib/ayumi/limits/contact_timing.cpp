@@ -36,7 +36,7 @@ void judge_contact_ends(JudgedMotion& motion) {
 Advice contact_end_advice(const JudgedMotion&, const FindingWindow& window) {
   return {"the " + std::string(name_of(foot_of(window.worst))) + " sole stands still for " +
               text::fixed(window.worst.value, 3) + " s after its contact ends",
-          "end the contact later by this time", ""};
+          "let the contact end " + text::fixed(window.worst.value, 3) + " s later", ""};
 }
 
 std::string contact_end_infeasibility(const Finding& f, double) {

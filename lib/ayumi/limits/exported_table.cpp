@@ -205,8 +205,8 @@ Advice table_position_advice(const JudgedMotion& motion, const FindingWindow& wi
                              : dof.prismatic       ? text::brief(1e3 * beyond, 3) + " mm"
                                                    : angle_size(beyond, motion.degrees, 3);
   return {refused_text(motion, v, "is " + amount + " beyond its range"),
-          "move " + dof.name +
-              " back by this amount, or let the joint reverse its direction more gently",
+          "move " + dof.name + " back by " + amount +
+              ", or let the joint reverse its direction more gently",
           kOrRepair};
 }
 

@@ -117,11 +117,11 @@ Advice support_advice(const JudgedMotion&, const FindingWindow& window) {
   if (v.value < 0)
     return {whose + " is " + in_mm(v.value) + " outside the support",
             // If a slower motion does not help, the remedy must not name more time.
-            "reduce the displacement of the COG by this distance",
+            "reduce the displacement of the COG by " + in_mm(v.value),
             std::string(", or give the step more time") + kOrRepair};
   return {whose + " is only " + in_mm(v.value) + " inside the support, but the wanted margin is " +
               in_mm(v.limit),
-          "reduce the displacement of the COG by the difference", kOrRepair};
+          "reduce the displacement of the COG by " + in_mm(v.limit - v.value), kOrRepair};
 }
 
 std::string support_infeasibility(const Finding& f, double violation) {

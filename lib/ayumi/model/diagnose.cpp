@@ -276,7 +276,7 @@ class Doctor {
     else if (limits.servo[static_cast<size_t>(index)].kp <= 0)
       suspect("kp of the servo is 0, so the joint is passive");
     if (dof.encoder.device == 0 && !model_.description().encoders.empty())
-      suspect("no encoder is stated, although other joints have one");
+      suspect("no encoder is stated, although other joints have an encoder");
   }
 
   void examine_placeholder_torques() {

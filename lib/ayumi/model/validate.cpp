@@ -349,7 +349,8 @@ void validate_force_cells(const RobotDescription& robot) {
   for (const auto& [side, cells] : robot.sensors.force_cells) {
     const auto sole = robot.soles.find(side);
     const std::string where = "/sensors/force_cells/" + side;
-    if (sole == robot.soles.end()) complain_sidecar(robot, where, "the robot has no such sole");
+    if (sole == robot.soles.end())
+      complain_sidecar(robot, where, "the robot has no sole of this name");
     const size_t corners = sole->second.polygon.size();
     if (cells.size() != 1 && cells.size() != corners)
       complain_sidecar(robot, where,

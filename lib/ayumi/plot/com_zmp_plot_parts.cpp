@@ -44,18 +44,19 @@ Interval time_range(const RobotModel* model, const std::vector<LociRun>& runs,
                                std::to_string(kMostRuns) + " can be told apart in one plot");
   for (const LociRun& run : runs)
     if (model && run.log->joints != model->dof_names())
-      fail(ErrorCode::usage,
-           "plot: run '" + run.label + "' has " + std::to_string(run.log->joints.size()) +
-               " joints, but not those of robot '" + model->name() + "', which has " +
-               std::to_string(model->dof_count()) + "; give runs of this robot");
+      fail(ErrorCode::usage, "plot: run '" + run.label + "' has " +
+                                 std::to_string(run.log->joints.size()) +
+                                 " joints, but the robot '" + model->name() + "' has " +
+                                 std::to_string(model->dof_count()) +
+                                 " joints or joints with other names; give runs of this robot");
   double last = 0;
   for (const LociRun& run : runs) last = std::max(last, duration(*run.log));
   const double end = options.end < 0 ? last : std::min(options.end, last);
   if (!(end > options.begin))
     fail(ErrorCode::usage, "plot: the times from " + text::brief(options.begin) + " s to " +
                                text::brief(options.end < 0 ? last : options.end) +
-                               " s contain nothing of the runs, which last " + text::brief(last) +
-                               " s");
+                               " s are outside the runs, because the longest run lasts " +
+                               text::brief(last) + " s");
   return {options.begin, end};
 }
 

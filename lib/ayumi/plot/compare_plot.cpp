@@ -89,7 +89,10 @@ void draw_curve(Drawing& drawing, const Comparison& comparison, const ShownCurve
 
 Drawing draw_comparison(const Comparison& comparison, const std::string& title) {
   const std::vector<ShownCurve> shown = shown_curves(comparison);
-  if (shown.empty()) fail(ErrorCode::usage, "nothing that moves was compared");
+  if (shown.empty())
+    fail(ErrorCode::usage,
+         "no joint moves in the compared time, and there are no other curves, so there is nothing "
+         "to draw");
   Drawing drawing;
   drawing.width = kComparedWidth;
   const double step = kCurveHeight + kErrorGap + kErrorHeight + kCurveGap;

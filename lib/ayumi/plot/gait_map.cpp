@@ -94,9 +94,10 @@ Drawing draw_gait_map(const GaitMap& map) {
   }
   if (!(most > 0)) most = 1;
   std::vector<std::string> below = {
-      "in each cell: smallest distance of the ZMP from the edge of the support [mm]; up: speed "
-      "forward [m/s]; left: speed to the left [m/s]",
-      "grey bar: transitions in both directions; orange bar: a transition in one direction only"};
+      "A cell shows the smallest distance of the ZMP from the edge of the support [mm]. The "
+      "speed forward [m/s] increases upwards, and the speed to the left [m/s] to the left.",
+      "A grey bar joins two gaits with transitions in both directions, and an orange bar joins two "
+      "gaits with a transition in one direction only."};
   for (const auto& [mark, text] : map.marks) below.push_back(std::string(1, mark) + ": " + text);
   below.insert(below.end(), map.remarks.begin(), map.remarks.end());
 

@@ -59,8 +59,8 @@ Drawing draw_influences(const std::string& title, const std::vector<ValueInfluen
   drawing.items.push_back(
       DrawnText{.position = {kEdge, 26}, .text = title, .size = 15, .bold = true});
   drawing.items.push_back(words({left, 52}, "rank correlation with the severity of the run"));
-  drawing.items.push_back(words({right, 52}, "failure rate in the lower half"));
-  drawing.items.push_back(words({right, 68}, "and in the upper half of the values, with interval"));
+  drawing.items.push_back(words({right, 52}, "failure rate for the lower half of the values"));
+  drawing.items.push_back(words({right, 68}, "and for the upper half, each with its interval"));
   drawing.items.push_back(filled_box({right - 12, 44}, {right - 4, 52}, kBetter));
   drawing.items.push_back(filled_box({right - 12, 60}, {right - 4, 68}, kWorse));
   const double middle = left + 0.5 * kPanelWidth;

@@ -290,13 +290,13 @@ std::string motion_of(const CommandSeries& series) {
         if (step.translation().norm() > kStepDistance ||
             elementary::angle_between(Eigen::Quaterniond(step.linear()),
                                       Eigen::Quaterniond::Identity()) > kStepTurn)
-          return "walking";
+          return "pushes while walking";
       }
       stood = &sample;
       flown = false;
     }
   }
-  return lifted[0] && lifted[1] ? "stepping in place" : "during the pattern";
+  return lifted[0] && lifted[1] ? "pushes while stepping in place" : "pushes during the motion";
 }
 
 }  // namespace
@@ -313,17 +313,18 @@ std::vector<std::string> push_summary_lines(const std::vector<PushCase>& cases,
     for (const bool standing : {false, true}) {
       const PushSummary s = summarize(cases, k, standing, push.step);
       if (s.cases == 0) continue;
-      const std::string when = standing ? "standing" : motion,
+      const std::string when = standing ? "pushes while standing" : motion,
                         law = name_of(push.controllers[k].type);
       lines.push_back(when + ", " + law + ": smallest push limit " + text::fixed(s.worst, 2) +
                       " B (J/m " + text::fixed(s.worst_speed, 2) + " m/s, J/mv " +
-                      text::fixed(s.worst_froude, 3) + "), mean " + text::fixed(s.mean, 2) +
-                      " B (J/m " + text::fixed(s.mean_speed, 2) + " m/s, J/mv " +
-                      text::fixed(s.mean_froude, 3) + ")");
+                      text::fixed(s.worst_froude, 3) + "), mean push limit " +
+                      text::fixed(s.mean, 2) + " B (J/m " + text::fixed(s.mean_speed, 2) +
+                      " m/s, J/mv " + text::fixed(s.mean_froude, 3) + ")");
       lines.push_back(when + ", " + open + ": smallest push limit " + text::fixed(s.open_worst, 2) +
-                      " B, mean " + text::fixed(s.open_mean, 2) + " B; the push limit of " + law +
-                      " is smaller than that of " + open + " in " + std::to_string(s.below_open) +
-                      " of " + text::counted(s.cases, "case"));
+                      " B, mean push limit " + text::fixed(s.open_mean, 2) +
+                      " B. The push limit of " + law + " is smaller than the push limit of " +
+                      open + " in " + std::to_string(s.below_open) + " of " +
+                      text::counted(s.cases, "case"));
     }
   return lines;
 }

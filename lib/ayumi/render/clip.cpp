@@ -123,12 +123,13 @@ std::vector<std::string> notes_of(const RobotModel& model, const RobotLook& look
   std::vector<std::string> notes;
   if (!has_visuals(model))
     notes.emplace_back(
-        "the robot has no visual meshes: it is drawn with its collision shapes, and with sticks "
-        "between joints where a link has no collision shape");
+        "the robot has no visual meshes. Its links are drawn with their collision shapes, and "
+        "links "
+        "without collision shapes as sticks between joints");
   else if (const int count = count_substitutes(model); count > 0)
     notes.push_back(
         std::to_string(count) + " of the robot's " + std::to_string(model.bodies().size()) +
-        " bodies lack visual shapes: they are drawn with their collision shapes, or with "
+        " bodies have no visual shapes. These bodies are drawn with their collision shapes, or as "
         "sticks between joints");
   if (moved > 0) notes.push_back(words_of(look, drawn, moved));
   return notes;

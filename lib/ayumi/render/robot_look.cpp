@@ -36,8 +36,8 @@ double thin_to(std::vector<BodySurface>& surface, double tolerance, size_t most,
 }
 
 std::string words_of(const RobotLook& look, size_t drawn, double moved) {
-  return "the robot has " + std::to_string(look.triangles) + " triangles; it is drawn with " +
-         std::to_string(drawn) + ", whose points are moved by about " +
+  return "the robot has " + std::to_string(look.triangles) + " triangles, but it is drawn with " +
+         std::to_string(drawn) + " triangles. This simplification moves the surface by about " +
          text::brief(1e3 * moved, 2) + " mm";
 }
 

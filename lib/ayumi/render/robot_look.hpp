@@ -34,8 +34,8 @@ inline constexpr double kThinned = 0.3;
 double thin_to(std::vector<BodySurface>& surface, double tolerance, size_t most,
                const Progress& progress = {});
 
-/// A text such as "the robot has 500000 triangles; it is drawn with 4000, whose points are moved by
-/// ...".
+/// A text such as "the robot has 500000 triangles, but it is drawn with 4000 triangles. This
+/// simplification moves the surface by about 2 mm".
 std::string words_of(const RobotLook& look, size_t drawn, double moved);
 
 }  // namespace ayumi

@@ -41,8 +41,8 @@ void require_sheet(long count, int columns, long width, long height) {
     fail(ErrorCode::usage, "a sheet of " + std::to_string(count) + " pictures would have " +
                                std::to_string(width * across) + " x " +
                                std::to_string(height * down) +
-                               " pixels; it needs one picture or more, and at most 16384 pixels a "
-                               "side");
+                               " pixels; a sheet must have at least one picture, and at most 16384 "
+                               "pixels on each side");
 }
 
 }  // namespace

@@ -158,8 +158,9 @@ std::string texture_bytes(const std::string& file, std::vector<std::string>& not
       notes.push_back("texture " + file + ": there is no such file; the surface is drawn white");
       return "";
     }
-    notes.push_back("texture " + file + ": the picture is taken from " + other.filename().string() +
-                    ", whose name differs in upper and lower case");
+    notes.push_back("texture " + file + ": there is no such file, so Ayumi uses " +
+                    other.filename().string() +
+                    ", whose name differs only in upper and lower case");
     path = other;
   }
   try {

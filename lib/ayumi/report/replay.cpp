@@ -221,7 +221,8 @@ ReplayData make_replay(const RobotModel& model, const RobotLook& look, const Rep
                 common_words(model, robot_extent(look.surface, model, log.samples.front().state),
                              log, plan.rate, data.start,
                              "3-D replay of " + input.title +
-                                 "; space plays, arrow keys step, Home and End go to the ends") +
+                                 ". The space key plays, the arrow keys step, and Home and End go "
+                                 "to the ends") +
                 "}";
   return data;
 }

@@ -68,11 +68,13 @@ std::string curves(const RobotModel& model, const ReportInput& input, double wid
   return "<div class=\"" + kind + "\">\n<figure data-time-axis=\"" + text::exact(plot::kLeft) +
          " " + text::exact(time.width - plot::kRight) + " " + text::exact(range.low) + " " +
          text::exact(range.high) + " " + text::exact(top) + "\">\n" + inline_svg(time) +
-         "<figcaption>Joints that move most, COG, ZMP and ground force against time; drag in the "
-         "plot to move the replay.</figcaption></figure>\n<figure>\n" +
+         "<figcaption>The joints that move most, the COG, the ZMP and the ground force against "
+         "time. "
+         "Drag in the plot to change the time of the replay.</figcaption></figure>\n<figure>\n" +
          inline_svg(draw_support(model, runs, options)) +
-         "<figcaption>The ground from above, with the footholds: number, foot and time of "
-         "landing.</figcaption></figure>\n</div>\n";
+         "<figcaption>The ground from above. Each foothold has its number, the foot and the time "
+         "of "
+         "the landing.</figcaption></figure>\n</div>\n";
 }
 
 std::string loci_section(const RobotModel& model, const ReportInput& input) {

@@ -101,8 +101,8 @@ std::string source_of_tables(const SimulationLog& log) {
   if (log.scenario.empty()) return "";
   return "<p>The tables <code>reference.csv</code> and <code>hoap.csv</code> are from the run "
          "without disturbances. This page does not show that run. "
-         "<code>reference_pushed.csv</code> is from the disturbed run. It contains the reactions "
-         "to the disturbances, so it is not for a robot.</p>\n";
+         "<code>reference_pushed.csv</code> is from the disturbed run. This table contains the "
+         "reactions to the disturbances, so do not play it on a robot.</p>\n";
 }
 
 std::string margin(double metres) {
@@ -125,9 +125,10 @@ Table moved_table(const RepairNote& note) {
 std::string repair_words(const RepairNote& note) {
   std::string words =
       "<p>Repair: " + escaped(note.status) + " after " + std::to_string(note.iterations) +
-      " iterations; joints moved by at most " + text::fixed(note.max_joint_change * 180 / M_PI, 2) +
-      " deg, the COG by " + millimetres(note.max_cog_change) + " mm; the ZMP is " +
-      margin(note.margin_before) + " before, " + margin(note.margin_after) + " after.</p>\n";
+      " iterations. Joints moved by at most " + text::fixed(note.max_joint_change * 180 / M_PI, 2) +
+      " deg, and the COG by at most " + millimetres(note.max_cog_change) + " mm. The ZMP was " +
+      margin(note.margin_before) + " the support before the repair, and is " +
+      margin(note.margin_after) + " the support after the repair.</p>\n";
   if (!note.joints.empty() && note.status == "repaired") words += table(moved_table(note));
   if (note.reasons.empty()) return words;
   words += "<ul>";
@@ -228,12 +229,13 @@ std::string verdict_section(const ReportInput& input) {
                     escaped(name_of(judged)) + " " + outcome_cell(result) +
                     escaped(push_words(*judged.log));
   if (input.results.check)
-    out += "; the pattern is " +
-           marked(consistent ? Tone::good
-                  : repaired ? Tone::neutral
-                             : Tone::bad,
-                  verdict_of(consistent) +
-                      std::string(!consistent && repaired ? " as written, and was repaired" : ""));
+    out +=
+        ". The pattern is " +
+        marked(consistent ? Tone::good
+               : repaired ? Tone::neutral
+                          : Tone::bad,
+               verdict_of(consistent) +
+                   std::string(!consistent && repaired ? " as written, but it was repaired" : ""));
   out += ".</p>\n" + table(run_table(input));
   if (input.results.repair) out += repair_words(*input.results.repair);
   if (input.results.safety) {
@@ -292,7 +294,8 @@ PushMap threshold_map(const std::vector<PushThreshold>& thresholds) {
 std::string findings_section(const RobotModel& model, const ReportInput& input) {
   if (!input.results.check) return "";
   const ConsistencyReport& check = *input.results.check;
-  std::string out = "<p>Judged against the actuators " + escaped(check.profile) + ".</p>\n";
+  std::string out =
+      "<p>The check used the limits of the actuator profile " + escaped(check.profile) + ".</p>\n";
   out +=
       check.findings.empty() ? "<p>The check has no findings.</p>\n" : finding_list(model, check);
   return section("findings", "Findings", out + table(summary_table(model, check.summary)));
@@ -313,9 +316,10 @@ std::string phase_words(const PushThreshold& threshold) {
 std::string thresholds_section(const ReportInput& input) {
   if (input.thresholds.empty()) return "";
   Table rows = {
-      "Largest survivable impulse of 20 ms through the COG. The bound is the impulse that a point "
-      "mass on the planned footholds could absorb; + means that the robot survives even the "
-      "largest push of the study.",
+      "Largest push that the robot survives, as an impulse within 20 ms through the COG. The bound "
+      "is the impulse that a point mass on the planned footholds could absorb. The sign + means "
+      "that "
+      "the robot survives even the largest push of the study.",
       {"phase", "towards [deg]", "law", "impulse [N s]", "open loop [N s]", "bound [N s]",
        "share of the bound"},
       {}};
@@ -399,11 +403,14 @@ std::string softness_of_soles(const RobotModel& model, const std::string& plant)
   std::vector<std::string> soles;
   for (const Side side : {Side::left, Side::right}) {
     const Sole& sole = model.sole(side);
-    soles.push_back(std::string(ayumi::name_of(side)) + " " + three_digits(1e-3 * sole.stiffness) +
-                    " kN/m, damping time " + three_digits(1e3 * sole.damping_time) + " ms");
+    soles.push_back(std::string(ayumi::name_of(side)) + " sole: stiffness " +
+                    three_digits(1e-3 * sole.stiffness) + " kN/m, damping time " +
+                    three_digits(1e3 * sole.damping_time) + " ms");
   }
   return text::join(soles, "; ") +
-         (plant == "ayumi" ? "" : "; not used by the plant " + plant + ", which has its own");
+         (plant == "ayumi"
+              ? ""
+              : ". The plant " + plant + " does not use these values, because it has its own");
 }
 
 }  // namespace

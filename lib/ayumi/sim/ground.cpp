@@ -201,7 +201,7 @@ void Ground::inner_points(const std::vector<Vector3d>& sole, double reach,
            "world: more than " + std::to_string(kMostInnerPoints) +
                " corners and edges of the ground lie under one sole at " + text::brief(p.x()) +
                ", " + text::brief(p.y()) +
-               " m; take fewer and larger blocks, or a field with a wider spacing");
+               " m. Take fewer and larger blocks, or a field with a wider spacing");
     points.push_back({id, {p.x(), p.y(), z}, gap, rise});
   };
   for (size_t b = 0; b < blocks_.size(); ++b) {

@@ -47,7 +47,7 @@ constexpr double kZmpMinLoad = 0.02;
 
 const CommandSeries& checked(const CommandSeries& series, const SimulateOptions& options) {
   if (series.samples.empty())
-    fail(ErrorCode::bad_pattern, "the motion has no samples; sample a pattern first");
+    fail(ErrorCode::bad_pattern, "the motion has no samples. Sample a pattern first");
   require_within("the number of integrator steps per servo period", options.substeps,
                  SimulateOptions::kSubsteps);
   return series;

@@ -51,24 +51,24 @@ void check_world(const RobotModel& model, const World& world) {
     fail(ErrorCode::bad_pattern, model.name() + ": the world's " + what);
   };
   if (!sound_friction(world.friction))
-    complain("friction is " + text::brief(world.friction) + "; the friction must be 0 or more");
+    complain("friction is " + text::brief(world.friction) + ". The friction must be 0 or more");
   if (!sound(world.slope) || !sound(world.height)) complain("slope or height is not a number");
   for (size_t i = 0; i < world.blocks.size(); ++i)
     if (!sound(world.blocks[i]))
       complain("block " + std::to_string(i) +
-               " is not valid; its values must be numbers below 1e6, and its radius must not be "
+               " is not valid. Its values must be numbers below 1e6, and its radius must not be "
                "negative");
   for (size_t i = 0; i < world.patches.size(); ++i) {
     const FrictionPatch& patch = world.patches[i];
     if (!sound(patch.low) || !sound(patch.high) || !sound_friction(patch.friction))
       complain("patch " + std::to_string(i) +
-               " is not valid; its values must be numbers below 1e6, and its friction must not be "
+               " is not valid. Its values must be numbers below 1e6, and its friction must not be "
                "negative");
   }
   for (const HeightField& field : world.fields)
     if (!sound(field.origin) || !(field.spacing > 0) || !sound(field.heights))
       complain(
-          "field is not valid; its values must be numbers below 1e6, and its spacing must be above "
+          "field is not valid. Its values must be numbers below 1e6, and its spacing must be above "
           "0");
 }
 
@@ -76,7 +76,7 @@ void check_state(const RobotModel& model, const RobotState& state) {
   const auto check = [&](const char* what, const auto& value) {
     if (!sound(value))
       fail(ErrorCode::usage, model.name() + ": " + what + " of the plant's state is " +
-                                 text::brief(unsound(value)) + "; numbers below 1e6 are expected");
+                                 text::brief(unsound(value)) + ". Numbers below 1e6 are expected");
   };
   if (state.theta.size() != model.dof_count() || state.dtheta.size() != model.dof_count())
     fail(ErrorCode::usage, model.name() + ": the plant's state needs " +
@@ -90,7 +90,7 @@ void check_state(const RobotModel& model, const RobotState& state) {
   const double length = state.base.attitude.norm();
   if (std::abs(length - 1) > 1e-6)
     fail(ErrorCode::usage, model.name() + ": base attitude of the plant's state has length " +
-                               text::brief(length) + "; a unit quaternion is expected");
+                               text::brief(length) + ". A unit quaternion is expected");
 }
 
 void check_report(const RobotModel& model, const StepReport& report) {
@@ -101,7 +101,7 @@ void check_report(const RobotModel& model, const StepReport& report) {
   const auto check = [&](const std::string& what, const auto& value) {
     if (!sound(value))
       fail(ErrorCode::usage, model.name() + ": the plant reports " + what + " " +
-                                 text::brief(unsound(value)) + "; numbers below 1e6 are expected");
+                                 text::brief(unsound(value)) + ". Numbers below 1e6 are expected");
   };
   check("a torque of", report.torque);
   check("an angle of a motor of", report.motor);
@@ -118,7 +118,7 @@ void check_report(const RobotModel& model, const StepReport& report) {
       check("a force at a sole of", contact.force);
       if (!sound(contact.gap))
         fail(ErrorCode::usage, model.name() + ": the plant reports a gap of a sole of " +
-                                   text::brief(contact.gap) + "; numbers below 1e6 are expected");
+                                   text::brief(contact.gap) + ". Numbers below 1e6 are expected");
     }
   }
 }
@@ -137,7 +137,7 @@ void check_step(const RobotModel& model, const VectorXd& targets, const StepInpu
   for (int j = 0; j < model.dof_count(); ++j)
     if (!sound(targets[j]))
       complain("servo target of " + model.dofs()[j].name + " is " + text::brief(targets[j]) +
-               "; a number below 1e6 is expected (with unstable gains, targets grow beyond this "
+               ". A number below 1e6 is expected (with unstable gains, targets grow beyond this "
                "number: choose smaller gains)");
   for (const ExternalWrench& w : input.wrenches)
     if (!(sound(w.force) && sound(w.torque) && sound(w.point) && w.body >= -1 &&
@@ -163,7 +163,7 @@ void check_step(const RobotModel& model, const VectorXd& targets, const StepInpu
   for (const RisingDisc& bump : input.bumps)
     if (!sound(bump.block) || !sound(bump.rate))
       complain(
-          "a bump is not valid; its values must be numbers below 1e6, and its radius must not be "
+          "a bump is not valid. Its values must be numbers below 1e6, and its radius must not be "
           "negative");
 }
 

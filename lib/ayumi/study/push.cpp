@@ -237,7 +237,7 @@ PushLimit Search::find(int guess, int stride) {
 void check_options(const PushOptions& options, const CommandSeries& series) {
   const auto refuse = [](const std::string& text) { fail(ErrorCode::usage, "push: " + text); };
   if (series.samples.empty())
-    fail(ErrorCode::bad_pattern, "the motion has no samples; sample a pattern first");
+    fail(ErrorCode::bad_pattern, "the motion has no samples. Sample a pattern first");
   require_within("push: the number of directions", options.directions, PushOptions::kDirections);
   require_within("push: the resolution of the search", options.step, PushOptions::kStep);
   require_within("push: the largest push", options.cap, PushOptions::kCap);
@@ -250,7 +250,7 @@ void check_options(const PushOptions& options, const CommandSeries& series) {
   for (const PushPhase& phase : options.phases)
     if (!phase.standing && !(phase.at >= options.time_spread + series.dt &&
                              phase.at + options.duration <= series.duration()))
-      refuse("a push at " + text::brief(phase.at) + " s is not possible; give a time from " +
+      refuse("a push at " + text::brief(phase.at) + " s is not possible. Give a time from " +
              text::brief(options.time_spread + series.dt) + " to " +
              text::brief(series.duration() - options.duration) + " s");
 }

@@ -64,7 +64,7 @@ SequentialTest::SequentialTest(double failure, double confidence, long most)
     fail(ErrorCode::usage,
          std::to_string(most) + " runs cannot show that the failure probability is at most " +
              text::brief(failure) + " with a confidence of " + text::brief(confidence) +
-             ", even if no run fails; give " + std::to_string(first) + " or more");
+             ", even if no run fails. Give " + std::to_string(first) + " or more");
   // More failures than this cannot be certified in `most` runs, because a robot with the failure
   // probability p0 has fewer failures on average.
   const auto widest = static_cast<size_t>(static_cast<double>(most) * failure) + 1;

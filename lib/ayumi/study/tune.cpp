@@ -156,10 +156,10 @@ TuneFigures Tuner::evaluate(const Gains& gains) {
 void check(const TuneOptions& options, const CommandSeries& series, const Gains& known) {
   const auto refuse = [](const std::string& why) { fail(ErrorCode::usage, "tune: " + why); };
   if (series.samples.empty())
-    fail(ErrorCode::bad_pattern, "the motion has no samples; sample a pattern first");
+    fail(ErrorCode::bad_pattern, "the motion has no samples. Sample a pattern first");
   if (options.simulate.controller.type != ControllerKind::dtad)
     refuse("controller '" + name_of(options.simulate.controller.type) +
-           "' has no gains to tune; use dtad");
+           "' has no gains to tune. Use dtad");
   require_within("tune: the number of directions", options.directions, PushOptions::kDirections);
   require_within("tune: the size of a push", options.level, TuneOptions::kLevel);
   if (!(options.factor > 1)) refuse("factor must exceed 1");
@@ -175,7 +175,7 @@ void check(const TuneOptions& options, const CommandSeries& series, const Gains&
   for (const PushPhase& phase : options.phases)
     if (!phase.standing &&
         !(phase.at >= kBranchLead && phase.at + options.duration <= series.duration()))
-      refuse("a push at " + text::brief(phase.at) + " s is not possible; give a time from " +
+      refuse("a push at " + text::brief(phase.at) + " s is not possible. Give a time from " +
              text::brief(kBranchLead) + " to " + text::brief(series.duration() - options.duration) +
              " s");
 }
@@ -208,7 +208,7 @@ TuneResult tune_gains(const RobotModel& model, const CommandSeries& series,
   result.before = result.after = tuner.evaluate(result.start);
   if (result.before.unpushed >= kFall)
     fail(ErrorCode::usage,
-         "tune: with the initial gains the robot falls without a push; start from other gains");
+         "tune: with the initial gains the robot falls without a push. Start from other gains");
 
   double factor = options.factor;
   for (int round = 0; round < options.rounds && factor > kSmallestFactor; ++round) {

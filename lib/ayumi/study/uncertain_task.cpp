@@ -167,13 +167,13 @@ UncertainTask::UncertainTask(const RobotModel& model, const CommandSeries& serie
       std::vector<std::string> names = {"cog", "trunk"};
       for (const Link& each : model.links()) names.push_back(each.name);
       refuse(push.link.place, model.name() + " has no link '" + link +
-                                  "'; a push acts on a link, on \"trunk\" or on \"cog\"" +
+                                  "'. A push acts on a link, on \"trunk\" or on \"cog\"" +
                                   text::suggestion(link, names));
     }
     if (push.bounds && !series.viip.empty())
       refuse(push.size.place,
              "the pattern has VIIP goals, so it has no planned footholds, and the capture bound is "
-             "not known; give the size in N s");
+             "not known. Give the size in N s");
     if (push.phases && phases_.empty()) {
       for (const PushPhase& phase : default_push_phases(model, series, options_))
         if (!phase.standing) phases_.push_back(phase);
@@ -187,7 +187,7 @@ UncertainTask::UncertainTask(const RobotModel& model, const CommandSeries& serie
     });
     if (!used)
       refuse(factor.place, "no quantity uses the factor '" + factor.name +
-                               "'; name it in a quantity, or leave it out");
+                               "'. Name it in a quantity, or leave it out");
   }
   dimension_ = normal_names_.size();
 }
@@ -210,11 +210,11 @@ void UncertainTask::add_quantity(const UncertainQuantity& q) {
   const Target target = info(q.kind).target;
   if (q.kind == UncertainKind::sensor_noise && !has_noise(model_->description().sensors))
     refuse(q.place, "this quantity has no effect: the sensors of " + model_->name() +
-                        " have no noise in the sidecar; state their noise, or remove the quantity");
+                        " have no noise in the sidecar. State their noise, or remove the quantity");
   if (q.kind == UncertainKind::bumps && !options_.world.fields.empty())
     refuse(
         q.place,
-        "the ground of the pattern already has a height field; remove that field or this quantity");
+        "the ground of the pattern already has a height field. Remove that field or this quantity");
   if (target == Target::none) return add_value(q.name, q, {}, -1);
   std::vector<int> found;
   std::vector<std::string> names;
@@ -306,13 +306,13 @@ void UncertainTask::check(const std::vector<double>& drawn, const std::string& w
     };
     if (!(drawn[i] >= least) || (positive && drawn[i] == least))
       complain(std::string("the value must ") + (positive ? "be above 0" : "not be negative") +
-               "; bound the distribution, for example with \"truncated\"");
+               ". Bound the distribution, for example with \"truncated\"");
     if (drawn[i] > most)
       complain("the largest value allowed is " + text::brief(most) +
-               "; check the unit, and bound the distribution, for example with \"truncated\"");
+               ". Check the unit, and bound the distribution, for example with \"truncated\"");
     if (q.kind == UncertainKind::push_time && drawn[i] >= end)
       complain("the run ends at " + text::brief(end) +
-               " s, so the push would have no effect; give an earlier time [s]");
+               " s, so the push would have no effect. Give an earlier time [s]");
   }
 }
 

@@ -206,7 +206,7 @@ DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
     fail(ErrorCode::usage, "controller gains: k and d must be given together");
   if (p.k && q_given)
     fail(ErrorCode::usage,
-         "controller gains: q already determines k and d; give either q, or k and d");
+         "controller gains: q already determines k and d. Give either q, or k and d");
   if (p.k && (*p.k <= 1 || *p.d <= 0))
     fail(ErrorCode::usage,
          "controller gains: k = " + text::brief(*p.k) + ", d = " + text::brief(*p.d) +

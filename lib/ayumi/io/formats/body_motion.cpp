@@ -160,7 +160,8 @@ class BodyMotionReader {
         if (frame.items.size() > 1) frame.items.resize(1);
       rows = rows_of(roots, 0);
       motion_.notes.push_back(
-          "the file has positions of several links; those of the first link are read as the root");
+          "the file has positions of several links; Ayumi reads the positions of the first link as "
+          "the positions of the root");
     }
     const size_t width = form == "XYZRPY" ? 6 : 7;
     const bool scalar_last = form == "XYZQXQYQZQW";

@@ -186,8 +186,9 @@ MotionFile read_deep_mimic(const MotionInput& source) {
       motion.base.push_back(frame_root(source, rows[k], k, 0, 3, false));
     set_values(rows, 7, rows.front().size() - 7, motion);
     motion.notes.push_back(
-        "units: metres and radians; axis up: z; quaternion order: x y z w. The file does not state "
-        "this order, so Ayumi assumes the order of files that have a single FrameDuration");
+        "units: metres and radians, with the axis z upwards. The file does not state the order of "
+        "the "
+        "quaternion; Ayumi assumes x y z w, the order of files that have a single FrameDuration");
   } else {
     const std::vector<std::vector<double>> rows = frames_of(source, root, 9);
     double now = 0;
@@ -206,8 +207,10 @@ MotionFile read_deep_mimic(const MotionInput& source) {
     set_values(rows, 8, rows.front().size() - 8, motion);
     motion.notes.push_back(
         "units: metres and radians; quaternion order: w x y z, as the format defines it. In the "
-        "file "
-        "the axis y is up; Ayumi turns the motion so that z is up. Each joint has one number");
+        "file, "
+        "the axis y points upwards; Ayumi turns the motion so that z points upwards. Each joint "
+        "has "
+        "one number");
   }
   if (const auto names = root.find("Joints")) motion.joints = names->strings();
   if (!motion.joints.empty() &&

@@ -517,8 +517,8 @@ std::vector<double> times_of(const MotionFile& motion, const ImportOptions& opti
     if (!(rate > 0))
       fail(ErrorCode::bad_file, {file},
            "this format does not state the number of rows per second. Give --rate HZ, for example "
-           "30 for the LAFAN1 motions of the Unitree G1. If you give twice the true rate, all "
-           "speeds become twice as large, and all accelerations four times as large, as they are");
+           "30 for the LAFAN1 motions of the Unitree G1. With twice the true rate, all speeds "
+           "would be twice as large as the true ones, and all accelerations four times as large");
     for (size_t k = 0; k < rows; ++k) times.push_back(static_cast<double>(k) / rate);
     return times;
   }

@@ -91,9 +91,10 @@ Trajectory trajectory_of_lists(const MotionInput& source, const YamlNode& motion
   one.joints = names_in(source, *names);
   const size_t width = one.joints.size(), rows = times->numbers.size();
   if (!positions->items.empty())
-    source.refuse(yaml_line(*positions),
-                  "one list of all positions is needed, but these are rows, or they are not finite "
-                  "numbers; join the rows to one list, or correct the numbers");
+    source.refuse(
+        yaml_line(*positions),
+        "the positions must be one list of finite numbers, but here they are rows, or some of them "
+        "are not finite numbers. Join the rows to one list, or correct the numbers");
   if (!times->items.empty()) source.refuse(yaml_line(*times), "the times are not finite numbers");
   if (positions->numbers.size() != rows * width)
     source.refuse(yaml_line(*positions),

@@ -86,7 +86,7 @@ Eigen::VectorXd sign_test_start(const RobotModel& model) {
   const std::string overlap = overlapping(model, CollisionModel(model), start);
   if (!overlap.empty())
     fail(ErrorCode::bad_model, "robot '" + model.name() + "': " + overlap +
-                                   " overlap with every joint at 0 or at its limit nearest to 0. "
+                                   " overlap if every joint is at 0, or at its limit nearest to 0. "
                                    "Name another start posture with --posture");
   return start;
 }

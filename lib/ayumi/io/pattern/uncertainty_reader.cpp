@@ -42,7 +42,7 @@ void read_weights(const JsonNode& node, size_t count, PatternScope& scope, Distr
   double sum = 0;
   for (const double weight : d.weights) {
     if (weight < 0)
-      weights->complain("a weight must not be negative, but one is " + text::exact(weight));
+      weights->complain("a weight must not be negative, but one weight is " + text::exact(weight));
     sum += weight;
   }
   if (!(sum > 0)) weights->complain("one of the weights must be above 0");

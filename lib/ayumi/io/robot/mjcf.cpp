@@ -599,8 +599,7 @@ RobotDescription parse_mjcf(const std::string&, const std::filesystem::path& pat
   fail(ErrorCode::bad_file, {path.string()},
        "this is an MJCF model, which Ayumi reads through MuJoCo, but "
        "this program was built without MuJoCo. Install MuJoCo (sudo apt-get "
-       "install libmujoco-dev), and configure and build Ayumi again; or convert "
-       "the model to URDF");
+       "install libmujoco-dev) and build Ayumi again, or convert the model to URDF");
 }
 
 }  // namespace ayumi

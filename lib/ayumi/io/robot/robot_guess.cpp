@@ -1010,8 +1010,8 @@ void find_servos(RobotGuess& guess) {
           " times the weight times the COG height (" + text::brief(kLegStiffness * weight * z, 3) +
           " N m/rad), so that the legs hold the robot. kd = 2 sqrt(kp I) damps the joint "
           "critically. "
-          "I is the inertia that the joint moves while the robot is in the air, with the rotor. So "
-          "the lag of the servos, kd/kp, is from " +
+          "Here I is the inertia that the joint and its rotor move while the robot is in the air. "
+          "So the lag of the servos, kd/kp, is from " +
           text::brief(1e3 * quickest, 2) + " to " + text::brief(1e3 * slowest, 2) +
           " ms, and the servo targets compensate this lag" +
           (estimated == 0

@@ -171,7 +171,7 @@ void read_encoders(const JsonNode& node, RobotDescription& robot) {
     EncoderDescription encoder;
     encoder.device = entry.at("device").integer();
     if (encoder.device < 1)
-      entry.at("device").complain("device numbers start at 1, but this one is " +
+      entry.at("device").complain("device numbers start at 1, but this number is " +
                                   std::to_string(encoder.device));
     const auto [other, fresh] = owner.emplace(encoder.device, joint);
     if (!fresh)

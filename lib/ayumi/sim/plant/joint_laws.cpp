@@ -52,7 +52,7 @@ JointLaws::JointLaws(const RobotModel& model, const ActuatorLimits& limits)
     const ServoDescription& servo = limits.servo[j];
     if (servo.kp <= 0 && !limits.has_servo[j])
       fail(ErrorCode::bad_model, model.name() + ": joint " + dof.name +
-                                     " has no servo; state kp of this joint in the sidecar");
+                                     " has no servo. State kp of this joint in the sidecar");
     Joint& joint = joints_[j];
     joint.lower = dof.lower;
     joint.upper = dof.upper;

@@ -182,7 +182,7 @@ void MujocoPlant::Impl::check_input(const VectorXd& targets, const StepInput& in
   if (input.bumps.size() > kMujocoBumps)
     fail(ErrorCode::bad_pattern, "the MuJoCo plant has room for " + std::to_string(kMujocoBumps) +
                                      " bumps at once, not " + std::to_string(input.bumps.size()) +
-                                     "; use --plant ayumi");
+                                     ". Use --plant ayumi");
 }
 
 // Sets the ground, loads, joints and pushes of this step.
@@ -277,7 +277,7 @@ MujocoPlant::MujocoPlant(const RobotModel& model, const ActuatorLimits& limits, 
     if (const auto j = static_cast<size_t>(&dof - model.dofs().data());
         limits.servo[j].kp <= 0 && !limits.has_servo[j])
       fail(ErrorCode::bad_model, model.name() + ": joint " + dof.name +
-                                     " has no servo; state kp of this joint in the sidecar");
+                                     " has no servo. State kp of this joint in the sidecar");
   for (int j = 0; j < model.dof_count(); ++j)
     if (const ServoDescription& servo = limits.servo[static_cast<size_t>(j)];
         mujoco_has_gear(servo) && servo.rotor_inertia <= 0)
