@@ -38,7 +38,7 @@ SimulationLog log_of_rows(size_t rows) {
   log.gains = {{"ka", 1.0 / 3}};
   log.provenance = {"hoap1", "ab", "walk", "cd", "hoap1", "dtad", "ayumi run walk.json"};
   log.joints = {"a"};
-  log.events = {{0.1, "push", "1.1 N s"}};
+  log.events = {{0.1, EventKind::push, "1.1 N s"}};
   for (size_t k = 0; k < rows; ++k) log.samples.push_back(sample_at_row(k));
   return log;
 }

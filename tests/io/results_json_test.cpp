@@ -95,7 +95,7 @@ TEST(ResultsJson, SimulationHasTheKeysOfTheCommandLine) {
   SimulationLog log;
   log.controller = ControllerKind::dtad;
   log.result = {.outcome = Outcome::fell, .fell_at = 2.25, .max_tilt = 0.9, .steps = 3};
-  log.events = {{2.25, "fell", "on its side"}};
+  log.events = {{2.25, EventKind::fell, "on its side"}};
   Json json = test::json_of(simulation_json(log));
   EXPECT_EQ(json.at("outcome"), "fell");
   EXPECT_EQ(json.at("fell_at_s"), 2.25);

@@ -90,7 +90,7 @@ SimulationLog random_log(unsigned seed) {
                   .shape = PushShape::half_sine};
   log.scenario = {{.at = 0.1, .what = push}};
   log.joints = {"a", "b", "c"};
-  log.events = {{0.1, "push", "1.1 N s on the \"COG\""}};
+  log.events = {{0.1, EventKind::push, "1.1 N s on the \"COG\""}};
   log.result = {.outcome = Outcome::stands, .max_tilt = 0.1 + 0.2, .steps = 9};
   for (int k = 0; k < 20; ++k) log.samples.push_back(random_sample(random, 3));
   return log;
@@ -238,9 +238,9 @@ TEST(SimulationLogFile, TicksAreServoPeriods) {
 // A report of a log with 200,000 events took longer than half a minute.
 TEST(SimulationLogFile, HasABoundedNumberOfEvents) {
   SimulationLog log = random_log(3);
-  log.events.resize(10'100, {0.1, "push", "x"});
+  log.events.resize(10'100, {0.1, EventKind::push, "x"});
   EXPECT_EQ(parse_message(log_bytes(log)), "no error");
-  log.events.resize(10'101, {0.1, "push", "x"});
+  log.events.resize(10'101, {0.1, EventKind::push, "x"});
   EXPECT_EQ(parse_message(log_bytes(log)),
             "x.bin (header): /events: the log has 10101 events, but at most 10100 are read; "
             "simulate again");
