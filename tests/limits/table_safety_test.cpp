@@ -132,7 +132,7 @@ TEST(ExportSafety, FindsTheStepThatIsTooLarge) {
   EXPECT_FALSE(report.safe);
   ASSERT_EQ(report.violations.size(), 1u);
   const SafetyViolation& found = report.violations[0];
-  EXPECT_EQ(found.kind, "step");
+  EXPECT_EQ(found.kind, TableLimit::step);
   EXPECT_EQ(found.joint, "b");
   EXPECT_DOUBLE_EQ(found.t, 2.005);
   EXPECT_EQ(found.value, 61);
