@@ -805,11 +805,12 @@ void add_edit(Command& app, Context& context) {
       ->type_name("T");
   key_command
       .add_option("--by", options.key_by,
-                  "Time by which the keyframe is moved [s]. A negative value moves it earlier.")
+                  "Time by which the keyframe is moved [s]. A negative value moves the keyframe to "
+                  "an earlier time.")
       ->check(number_within(-1e6, 1e6))
       ->type_name("S");
   key_command.add_flag("--copy", options.key.copy,
-                       "Keep the keyframe at its old time, and move a copy of it.");
+                       "Keep the keyframe at its old time, and move a copy of the keyframe.");
   key_command.add_flag("--mirror", options.key.mirror,
                        "Exchange left and right in the keyframe at its new time.");
   key_command.callback([&context] { edit_key(context, options); });

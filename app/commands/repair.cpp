@@ -212,7 +212,7 @@ std::string in_words(const PassingPace& pace) {
   }
   if (pace.tried > 0 && pace.factor == 0 && pace.whole == 0)
     out +=
-        "  more time alone is not enough: the pattern fails the check even if its keys are played "
+        "  more time alone is not enough: the pattern fails the check even if the keys are played "
         "up to " +
         text::brief(pace.tried) + " times more slowly\n";
   if (pace.whole > 0)
