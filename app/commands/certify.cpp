@@ -134,8 +134,7 @@ void print_influences(const Context& context, std::vector<ValueInfluence> influe
                    });
   context.print(
       "  influence of each uncertain value. The correlation (-1 to 1) is the rank correlation of "
-      "the "
-      "value with how badly a run ends. The halves are the halves of the range of the value\n");
+      "the value with how badly a run ends. The halves are the halves of the range of the value\n");
   for (size_t i = 0; i < std::min(influences.size(), kShownInfluences); ++i) {
     const ValueInfluence& each = influences[i];
     context.print("    " + each.name + ": correlation " + text::fixed(each.correlation, 2) +

@@ -282,8 +282,7 @@ std::string in_words(const LocalPace& pace, bool pauses_kept) {
   if (!pace.stands.value_or(true))
     out +=
         "  caution: in open loop, the robot falls with this timing. It stands with the uniform "
-        "pace, "
-        "but the motion with the uniform pace does not pass the check\n";
+        "pace, but the motion with the uniform pace does not pass the check\n";
   if (!pace.not_simulated.empty())
     out +=
         "  caution: this timing was not simulated, so it is not known whether the robot stands. "

@@ -481,8 +481,7 @@ std::vector<std::string> refusals(const ExportOptions& options, const Source& so
 std::string words_of(const TableServo& servo) {
   if (servo.content == "ideal")
     return "the table contains joint angles, not servo targets (--servo ideal). It was judged by "
-           "the limits of "
-           "profile " +
+           "the limits of profile " +
            servo.profile;
   const bool one = servo.lag.find(' ') == std::string::npos;
   return "made for the servos of profile " + servo.profile +

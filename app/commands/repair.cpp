@@ -552,12 +552,10 @@ void add_repair(Command& app, Context& context) {
                    "Draw joints, COG and ZMP before and after the repair (.svg or .png).")
       ->type_name("F");
   command
-      ->add_option(
-          "--margin", options.margin,
-          "Wanted distance from the ZMP to the edge of the support [m]. Where the original motion "
-          "has a smaller distance, the repair tries to reach the wanted distance (default: 0.9 x "
-          "the "
-          "radius of the largest circle inside the sole).")
+      ->add_option("--margin", options.margin,
+                   "Wanted distance from the ZMP to the edge of the support [m]. Where the "
+                   "original motion has a smaller distance, the repair tries to reach the wanted "
+                   "distance (default: 0.9 x the radius of the largest circle inside the sole).")
       ->check(number_within(RepairOptions::kZmpMargin))
       ->type_name("M");
   command

@@ -283,8 +283,7 @@ std::string remedy(const std::vector<LoopModel>& loops, const DtadParams& params
     return "Choose " + gains_in_words(changed_loop_gains(*stable, params)) +
            ", for which the loop is stable";
   return "The loop is unstable for every ka and for all ks, kd, damp and tau_z that were tried. "
-         "The "
-         "servos are too soft for this robot. Use stiffer servos";
+         "The servos are too soft for this robot. Use stiffer servos";
 }
 
 // Support and direction of a loop in words.
