@@ -205,9 +205,10 @@ std::string case_tables(const SweepHead& head) {
       "TOTAL(outcome <> 'stands') / COUNT(outcome) AS failure_rate, " +
       std::string(judged ? "CAST(TOTAL(consistent = 0) AS INTEGER)" : "NULL") + " AS inconsistent" +
       extremes +
-      " FROM cases;CREATE VIEW failed AS SELECT * FROM cases WHERE error IS NOT NULL OR outcome <> "
-      "'stands';CREATE VIEW worst AS SELECT * FROM cases WHERE severity IS NOT NULL ORDER BY "
-      "severity DESC, \"case\";";
+      " FROM cases;"
+      "CREATE VIEW failed AS SELECT * FROM cases WHERE error IS NOT NULL OR outcome <> 'stands';"
+      "CREATE VIEW worst AS SELECT * FROM cases WHERE severity IS NOT NULL ORDER BY severity DESC, "
+      "\"case\";";
   if (!rates.empty()) sql += "CREATE VIEW rates AS " + rates + ";";
   return sql;
 }
