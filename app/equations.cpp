@@ -407,9 +407,8 @@ const char* kLong =
     "The long term of DTAD computes the ZMP that brings the COG back to the command. The ZMP moves "
     "by more than the error of the COG, because K > 1. While this error grows, the ZMP moves "
     "further, because D > 0. The paper prints the term with D with a wrong sign. A ZMP outside the "
-    "support is "
-    "replaced by the nearest point of the support, because the ground cannot push outside the "
-    "feet.";
+    "support is replaced by the nearest point of the support, because the ground cannot push "
+    "outside the feet.";
 const char* kResolve =
     "There are many sets of joint rates that give the COG its reference velocity while the "
     "free foot and the trunk follow the plan. This equation selects the set nearest to the "

@@ -14,7 +14,7 @@ std::string overview(const CLI::App& app) {
   std::string text =
       "Ayumi checks, stabilizes and exports motion patterns of humanoid robots.\n\n"
       "  robot + pattern -> check -> repair -> simulate -> tables, clips, report\n\n"
-      "Usage: ayumi COMMAND ...     For the options of one command: ayumi COMMAND --help\n\n";
+      "Usage: ayumi COMMAND ...   For the options of one command: ayumi COMMAND --help\n\n";
   for (const CLI::App* command : app.get_subcommands(nullptr)) {
     std::string line = "  " + command->get_name();
     line.resize(std::max<size_t>(line.size() + 1, 14), ' ');

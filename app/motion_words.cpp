@@ -58,7 +58,7 @@ std::string motion_words(const RobotModel& model, const MotionChange& change,
     ++listed;
   if (listed == 0) out += files ? "  no joint differs\n" : "  no joint moved\n";
   if (files && listed > 0)
-    out += "  the angles in " + names.second + " differ from those in " + names.first + ":\n";
+    out += "  the angles in " + names.second + " differ from the angles in " + names.first + ":\n";
   for (size_t i = 0; i < listed; ++i)
     out += (i == 0 ? lead : std::string(lead.size(), ' ')) +
            joint_words(model, change.joints[i], files ? "different" : "moved") + "\n";

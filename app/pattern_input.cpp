@@ -27,13 +27,11 @@ void add_pattern_options(Command& command, PatternOptions& options) {
 
 void add_push_times(Command& command, std::vector<double>& times) {
   command
-      .add_option(
-          "--times", times,
-          "Times of the pushes [s] (default: chosen from the pattern). By default, a walk is "
-          "pushed once while the robot stands and four times during one step. Steps of VIIP are "
-          "pushed "
-          "three times during one step. A motion without steps is pushed once while the robot "
-          "stands and once in the middle.")
+      .add_option("--times", times,
+                  "Times of the pushes [s] (default: chosen from the pattern). By default, a walk "
+                  "is pushed once while the robot stands and four times during one step. Steps of "
+                  "VIIP are pushed three times during one step. A motion without steps is pushed "
+                  "once while the robot stands and once in the middle.")
       ->type_name("T")
       ->delimiter(',');
 }

@@ -103,8 +103,7 @@ std::string sign_test_words(const RobotModel& model, const std::vector<SignTest>
   }
   if (bent.empty())
     return "Every test begins and ends with all joints at 0. A target of 0 is an encoder reading "
-           "of "
-           "0, so a joint with a wrong sign does not jump when a test begins.";
+           "of 0, so a joint with a wrong sign does not jump when a test begins.";
   return "Caution: these joints do not begin at 0: " + bent +
          ". When a test begins, each of these joints whose sign is wrong jumps to the opposite "
          "angle.";

@@ -133,8 +133,8 @@ void print_influences(const Context& context, std::vector<ValueInfluence> influe
                      return std::abs(a.correlation) > std::abs(b.correlation);
                    });
   context.print(
-      "  influence of each uncertain value: the rank correlation (-1 to 1) of the value with how "
-      "badly a run ends, and the failed runs in the lower and in the upper half of its range\n");
+      "  influence of each uncertain value. The correlation (-1 to 1) is the rank correlation of "
+      "the value with how badly a run ends. The halves are the halves of the range of the value\n");
   for (size_t i = 0; i < std::min(influences.size(), kShownInfluences); ++i) {
     const ValueInfluence& each = influences[i];
     context.print("    " + each.name + ": correlation " + text::fixed(each.correlation, 2) +

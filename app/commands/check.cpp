@@ -83,7 +83,8 @@ std::string own_need(const Task& input, CheckOptions judged) {
 // its joint and time says nothing.
 std::vector<AnswerPart> need_parts(const ActuatorNeed& need, const std::string& profile) {
   const std::string weak =
-      "  profile " + profile + " is too weak: the motion needs more than its motors give";
+      "  profile " + profile +
+      " is too weak: the motion needs more than the motors of this profile give";
   const std::string enough = need.sufficient.empty() ? "No other profile is strong enough"
                                                      : "Profiles that are strong enough: " +
                                                            text::join(need.sufficient, ", ");

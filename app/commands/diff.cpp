@@ -136,11 +136,11 @@ void add_diff(Command& app, Context& context) {
       ->type_name("JOINT=FACTOR")
       ->allow_extra_args(false);
   command
-      ->add_option(
-          "--safety", options.safety,
-          "Factor on the cost of missing safety: B has this cost where it is nearer to the limits "
-          "than is safe. diff prints the cost if it is not negligible. repair has the same option "
-          "(default: the factor in the pattern; 1 if the pattern has none).")
+      ->add_option("--safety", options.safety,
+                   "Factor on the cost of missing safety. B has this cost if its motion comes "
+                   "nearer to the limits than is safe. diff prints the cost if the cost is not "
+                   "negligible. repair has the same option "
+                   "(default: the factor in the pattern; 1 if the pattern has none).")
       ->check(number_within(0.0, 1e6))
       ->type_name("FACTOR");
   add_pattern_options(*command, options.input);

@@ -282,8 +282,7 @@ std::string in_words(const LocalPace& pace, bool pauses_kept) {
   if (!pace.stands.value_or(true))
     out +=
         "  caution: in open loop, the robot falls with this timing. It stands with the uniform "
-        "pace, "
-        "but the motion with the uniform pace does not pass the check\n";
+        "pace, but the motion with the uniform pace does not pass the check\n";
   if (!pace.not_simulated.empty())
     out +=
         "  caution: this timing was not simulated, so it is not known whether the robot stands. "
@@ -805,11 +804,12 @@ void add_edit(Command& app, Context& context) {
       ->type_name("T");
   key_command
       .add_option("--by", options.key_by,
-                  "Time by which the keyframe is moved [s]. A negative value moves it earlier.")
+                  "Time by which the keyframe is moved [s]. A negative value moves the keyframe to "
+                  "an earlier time.")
       ->check(number_within(-1e6, 1e6))
       ->type_name("S");
   key_command.add_flag("--copy", options.key.copy,
-                       "Keep the keyframe at its old time, and move a copy of it.");
+                       "Keep the keyframe at its old time, and move a copy of the keyframe.");
   key_command.add_flag("--mirror", options.key.mirror,
                        "Exchange left and right in the keyframe at its new time.");
   key_command.callback([&context] { edit_key(context, options); });

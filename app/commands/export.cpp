@@ -222,7 +222,7 @@ void require_table_of_log(const ReferenceTrajectory& table, const ReferenceTraje
   };
   if (table.dt != of_log.dt)
     refuse("the table has a row every " + text::brief(1000 * table.dt) +
-           " ms, but the log of the run has one every " + text::brief(1000 * of_log.dt) + " ms");
+           " ms, but the log of the run has a row every " + text::brief(1000 * of_log.dt) + " ms");
   if (table.rows.size() != of_log.rows.size())
     refuse("the table has " + text::counted(table.rows.size(), "row") +
            ", but the log of the run has " + std::to_string(of_log.rows.size()));
@@ -481,8 +481,7 @@ std::vector<std::string> refusals(const ExportOptions& options, const Source& so
 std::string words_of(const TableServo& servo) {
   if (servo.content == "ideal")
     return "the table contains joint angles, not servo targets (--servo ideal). It was judged by "
-           "the limits of "
-           "profile " +
+           "the limits of profile " +
            servo.profile;
   const bool one = servo.lag.find(' ') == std::string::npos;
   return "made for the servos of profile " + servo.profile +
@@ -766,7 +765,7 @@ void export_table(ExportOptions options, Context& context) {
   }
   if (refused.empty()) write_table(options, context, source, safe);
   context.print(in_words(options, source, safe, refused) +
-                (source.original          ? "  the file is the imported one, byte for byte\n"
+                (source.original          ? "  the file is the imported file, byte for byte\n"
                  : motion_format(options) ? ""
                                           : words_on_sequence(source, safe)));
   if (!safe.report.safe)
@@ -857,8 +856,8 @@ void add_export(Command& app, Context& context) {
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
   command->add_flag("--pushed", options->pushed,
-                    "Export the table of the disturbed run. The head of the table says that it "
-                    "contains the reactions to disturbances.");
+                    "Export the table of the disturbed run. The head of the table then says that "
+                    "the table contains the reactions to disturbances.");
   command->add_flag("--force-unsafe", options->force_unsafe,
                     "Write the table even if it is unsafe, or if `export` refuses to write it, for "
                     "example because the robot fell in the run. The head and the name of the table "

@@ -185,8 +185,8 @@ void init(const Context& context, const InitOptions& options) {
 
 void add_init(Command& app, Context& context) {
   Command* command = app.add_subcommand("init",
-                                        "write the first sidecar of a robot from its URDF, MJCF, "
-                                        "SDF, body or ztk file, a picture and a to-do list");
+                                        "write the first sidecar of a robot, a picture and a to-do "
+                                        "list from its URDF, MJCF, SDF, body or ztk file");
   command->footer(
       "Examples:\n  ayumi init somebody.urdf -o my_robots/somebody\n"
       "Then follow the to-do list, and make a motion:\n"

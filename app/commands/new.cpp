@@ -708,8 +708,8 @@ void new_excite(Context& context, const NewOptions& options) {
       }
       const std::string limit = alone.nearest.empty() ? alone.limit : alone.nearest;
       left_out += "  " + std::string(name_of(part)) +
-                  ": this part is left out, because the robot cannot do it with any of the values "
-                  "that were tried. Its limit is " +
+                  ": this part is left out, because the robot cannot make this movement with any "
+                  "of the values that were tried. Its limit is " +
                   limit + "\n";
     }
     SearchResult rest;
@@ -759,7 +759,7 @@ void add_height(Command& command, double& height,
 void add_gait(Command& command, NewOptions& options) {
   command
       .add_option("--steps", options.walk.steps,
-                  "Number of steps. After them, one more step brings the feet together.")
+                  "Number of steps. After these steps, one more step brings the feet together.")
       ->capture_default_str()
       ->type_name("N");
   add_scaled(command, "--period", options.period, "Time of one step [s]", WalkParameters().period,

@@ -120,7 +120,7 @@ void plot(const PlotOptions& asked, Context& context) {
     }
     if (!model && loci.frame == Frame::foot)
       fail(ErrorCode::usage,
-           "--frame foot: the robot of the run is not known. Name it with --robot");
+           "--frame foot: the robot of the run is not known. Name the robot with --robot");
     write_loci(runs, options.output, loci);
     series = loci_series(loci);
   }

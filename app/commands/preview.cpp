@@ -333,8 +333,7 @@ void add_preview(Command& app, Context& context) {
   command
       ->add_option("-o,--out", options->output,
                    "File to write: .mp4, .webm, .gif, .apng, .png or .glb; without an extension, a "
-                   "folder of "
-                   "PNG frames. For several runs, a folder of clips.")
+                   "folder of PNG frames. For several runs, a folder of clips.")
       ->required()
       ->type_name("FILE");
   command->add_option("--log", options->log, "Log of the run, for example open_loop.");

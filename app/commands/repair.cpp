@@ -212,7 +212,7 @@ std::string in_words(const PassingPace& pace) {
   }
   if (pace.tried > 0 && pace.factor == 0 && pace.whole == 0)
     out +=
-        "  more time alone is not enough: the pattern fails the check even if its keys are played "
+        "  more time alone is not enough: the pattern fails the check even if the keys are played "
         "up to " +
         text::brief(pace.tried) + " times more slowly\n";
   if (pace.whole > 0)
@@ -551,12 +551,10 @@ void add_repair(Command& app, Context& context) {
                    "Draw joints, COG and ZMP before and after the repair (.svg or .png).")
       ->type_name("F");
   command
-      ->add_option(
-          "--margin", options.margin,
-          "Wanted distance from the ZMP to the edge of the support [m]. Where the original motion "
-          "has a smaller distance, the repair tries to reach the wanted distance (default: 0.9 x "
-          "the "
-          "radius of the largest circle inside the sole).")
+      ->add_option("--margin", options.margin,
+                   "Wanted distance from the ZMP to the edge of the support [m]. Where the "
+                   "original motion has a smaller distance, the repair tries to reach the wanted "
+                   "distance (default: 0.9 x the radius of the largest circle inside the sole).")
       ->check(number_within(RepairOptions::kZmpMargin))
       ->type_name("M");
   command

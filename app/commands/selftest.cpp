@@ -276,7 +276,7 @@ void compare(Context& context, const SelftestCommand& options) {
     if (!same) table += "           SHA-256 " + found + ", expected " + job.sha256 + "\n";
   }
   table += different == 0
-               ? "All results are the same as the published ones, bit for bit.\n"
+               ? "All results are the same as the published results, bit for bit.\n"
                : text::counted(different, "result") + (different == 1 ? " differs" : " differ") +
                      " from what was published. If the tests pass on this machine, the verdicts of "
                      "this program are still right, but its tables differ in some bytes from "
@@ -293,7 +293,7 @@ void compare(Context& context, const SelftestCommand& options) {
 
 void add_selftest(Command& app, Context& context) {
   Command* command = app.add_subcommand(
-      "selftest", "compare the results of this machine with the published ones, bit for bit");
+      "selftest", "compare the results of this machine with the published results, bit for bit");
   auto options = std::make_shared<SelftestCommand>();
   std::vector<std::string> names;
   for (const Job& job : kJobs) names.push_back(job.name);

@@ -65,7 +65,7 @@ std::vector<double> axis_values(const std::string& words, const std::string& opt
     for (const std::string& word : split_at(words, ',')) values.push_back(axis_value(word, option));
   } else {
     fail(ErrorCode::usage, option + ": '" + words +
-                               "' is not a list of values. Give them as 0,0.05,0.1 or as "
+                               "' is not a list of values. Give the values as 0,0.05,0.1 or as "
                                "FROM:TO:COUNT, for example 0:0.1:3");
   }
   for (size_t i = 1; i < values.size(); ++i)

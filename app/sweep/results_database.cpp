@@ -250,8 +250,7 @@ void ResultsDatabase::complain(const std::string& doing) const {
   if (code == SQLITE_FULL || unwritten)
     why =
         "the disk is full, or the system does not let the file grow. What was written before is "
-        "kept. Make room "
-        "and run the same command again to go on";
+        "kept. Make room and run the same command again to continue";
   else if (code == SQLITE_NOTADB || code == SQLITE_CORRUPT)
     why = kNoResults;
   else if (code == SQLITE_BUSY)

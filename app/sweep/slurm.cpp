@@ -391,7 +391,7 @@ class Engine {
                text::counted(static_cast<long>(options_.attempts), "time") +
                (why_lost_.empty() ? "" : " (" + why_lost_ + ")") +
                ". All other results are kept. The output of the tasks is in " + folder_.string() +
-               ". Run the same command again to go on");
+               ". Run the same command again to continue");
     // Copies of tasks that counted as lost are no longer needed.
     run_command({"scancel", "--name=" + state_.name});
     fs::remove_all(folder_);
@@ -659,7 +659,7 @@ class Engine {
       } else if (seconds_since(answered_) > kLongestSilence) {
         fail(ErrorCode::bad_file,
              "--engine slurm: Slurm does not answer (" + trouble +
-                 "). The results that arrived are kept. Run the same command again to go on");
+                 "). The results that arrived are kept. Run the same command again to continue");
       }
       if (out_.empty() && pending_.empty()) break;
       const std::vector<bool> missing = left();

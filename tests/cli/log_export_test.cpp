@@ -323,7 +323,7 @@ TEST_F(LogExport, TablesOfAnotherLogAreRefused) {
       "fewer rows", [](RunFolder& run) { run.reference->rows.pop_back(); }, " rows, but the log");
   expect_refused_run(
       "other rate", [](RunFolder& run) { run.reference->dt = 0.002; },
-      "the table has a row every 2 ms, but the log of the run has one every 1 ms");
+      "the table has a row every 2 ms, but the log of the run has a row every 1 ms");
 }
 
 // A log with another tick, with all hashes made to fit, also where no table is compared with it.

@@ -196,7 +196,7 @@ TEST_F(Run, ARunThatFellGivesNoTableForARobot) {
   ASSERT_EQ(said.at("undisturbed").at("outcome"), "stands");
   EXPECT_FALSE(fs::exists(folder / "out/hoap.csv"));
   EXPECT_NE(contents(folder / "out/reference.csv")
-                .find("# unfit: under its disturbances the run "
+                .find("# unfit: under its disturbances the robot "
                       "fell at"),
             std::string::npos);
   for (const std::string format : {"hoap", "csv", "json"}) {

@@ -223,8 +223,7 @@ TEST(GainDesign, RefusesWishesThatNoGainsFulfil) {
   EXPECT_EQ(refused(with({-1, 2}, {-1, 3})), "poles: give two real poles or a conjugate pair");
   EXPECT_EQ(refused(with(-1, 2)),
             "a pole with the real part 2 is not possible: the real part must be below 0, because "
-            "otherwise the "
-            "COG never comes back");
+            "otherwise the COG never comes back");
   EXPECT_EQ(refused(with(3, -1)).substr(0, 29), "a pole with the real part 3 i");
   EXPECT_EQ(test::error_message([] { gains_from_poles(-1, 0, {}); }, ErrorCode::usage),
             "poles: the real part 0 is not below 0, so the COG would never come back");

@@ -175,8 +175,8 @@ TEST(UncertainTask, RefusesWhatNothingUsesAndWhatNoRobotCanHave) {
             "study.json: /uncertainty/quantities/0: this quantity has no effect: hoap1 has no link "
             "'l_fot' with a mass; did you mean 'l_foot'?");
   EXPECT_EQ(message(R"("factors": [{"name": "heat", "source": "t"}])"),
-            "study.json: /uncertainty/factors/0: no quantity uses the factor 'heat'. Name it in a "
-            "quantity, or leave it out");
+            "study.json: /uncertainty/factors/0: no quantity uses the factor 'heat'. Name the "
+            "factor in a quantity, or leave the factor out");
   const StandingTask negative(
       R"("quantities": [{"what": "mass", "normal": [0, 1], "source": "t"}])");
   CertifyOptions options;

@@ -282,8 +282,8 @@ std::string remedy(const std::vector<LoopModel>& loops, const DtadParams& params
   if (const auto stable = nearest_stable_gains(loops, params))
     return "Choose " + gains_in_words(changed_loop_gains(*stable, params)) +
            ", for which the loop is stable";
-  return "The loop is unstable for every ka and for all ks, kd, damp and tau_z that were tried, "
-         "because the servos are too soft for this robot. Use stiffer servos";
+  return "The loop is unstable for every ka and for all ks, kd, damp and tau_z that were tried. "
+         "The servos are too soft for this robot. Use stiffer servos";
 }
 
 // Support and direction of a loop in words.

@@ -187,7 +187,7 @@ UncertainTask::UncertainTask(const RobotModel& model, const CommandSeries& serie
     });
     if (!used)
       refuse(factor.place, "no quantity uses the factor '" + factor.name +
-                               "'. Name it in a quantity, or leave it out");
+                               "'. Name the factor in a quantity, or leave the factor out");
   }
   dimension_ = normal_names_.size();
 }

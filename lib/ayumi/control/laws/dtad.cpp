@@ -149,8 +149,7 @@ void check_baseline(const DtadParams& p) {
          "from 1e-9 to 1. This gain is the cost of changing the jerk of the COG");
     need(p.preview_horizon > 0 && p.preview_horizon <= 50, "horizon", p.preview_horizon,
          "above 0 and at most 50. This gain is the time for which the planned ZMP is known in "
-         "advance, "
-         "multiplied by omega");
+         "advance, multiplied by omega");
   }
   if (p.kind == ControllerKind::foot_guided) positive("soonest", p.least_guide_time);
   if (p.kind == ControllerKind::dcm_step) {
