@@ -224,6 +224,9 @@ Checked checked_one(const Context& context, const CheckCommand& options, const s
       : !payloads.empty() ? payloads
                           : likely_causes(input, judged, report, context.progress());
   const std::vector<std::string> disturbed = findings_under_scenario(input, judged, report);
+  std::vector<std::string> assumptions;
+  if (const std::string soles = inferred_soles(input.robot.description()); !soles.empty())
+    assumptions.push_back(soles);
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   Checked checked;
@@ -241,6 +244,7 @@ Checked checked_one(const Context& context, const CheckCommand& options, const s
                                            ? " (`export --format hoap` judges by these motors)"
                                            : "")}));
   append(parts, refusal_parts(input, judgement));
+  append(parts, remark_parts(painted(Paint::caution, "assumption:") + " ", assumptions));
   append(parts, check_parts(report, input.robot, options.all ? Shown::findings : Shown::causes));
   append(parts, search_parts(mistakes));
   parts.push_back({Worth::origin, {origin_words(input.series.origin), ""}, kOriginHang});
@@ -265,6 +269,7 @@ Checked checked_one(const Context& context, const CheckCommand& options, const s
                        {"own", own.empty() ? Json(nullptr) : Json(own)}};
   json["likely_mistakes"] = cause_texts(mistakes);
   json["with_disturbances"] = disturbed;
+  json["assumptions"] = assumptions;
   json["export_refuses"] = export_refusals(input, judgement);
   if (!options.plot.empty()) json["plot"] = {{"output", options.plot}, {"series", panels}};
   json["sampled_from"] = input.series.origin;

@@ -310,8 +310,14 @@ TEST(FirstSidecar, ReadsBackAsItWasGuessed) {
     const FirstSidecar sidecar = first_sidecar(urdf, folder.path() / kind.name);
     const RobotModel bare(load_robot_description(urdf)),
         stated(load_robot_description(folder.write(kind.name + "/robot.json", sidecar.text)));
-    EXPECT_TRUE(stated.description().assumptions.empty() ||
-                stated.description().assumptions[0].find("placeholders") != std::string::npos);
+    EXPECT_EQ(inferred_soles(bare.description()), inferred_soles(stated.description()));
+    EXPECT_TRUE(inferred_soles(bare.description())
+                    .starts_with("soles inferred from the points of the feet that are at most 1 mm "
+                                 "above the ground: left l_foot, 130 x 70 mm, 4 corners; "));
+    for (const std::string& each : stated.description().assumptions)
+      EXPECT_TRUE(each.find("placeholders") != std::string::npos ||
+                  each == inferred_soles(stated.description()))
+          << each;
     EXPECT_LT((bare.posture() - stated.posture()).norm(), 1e-9);
     EXPECT_EQ(bare.description().servos, stated.description().servos);
     for (const Side side : {Side::left, Side::right}) {
@@ -539,8 +545,8 @@ TEST(FirstSidecar, RefusesARobotThatHasOne) {
 }
 
 // The text of a biped whose legs have meshes that do not exist, in the place of their shapes.
-std::string biped_without_meshes() {
-  std::string text = UrdfBiped{}.text();
+std::string biped_without_meshes(double facing = 0) {
+  std::string text = UrdfBiped{.facing = facing}.text();
   for (const std::string side : {"l_", "r_"})
     for (const std::string link : {"thigh", "shank", "foot"}) {
       const size_t from = text.find("<link name=\"" + side + link);
@@ -555,33 +561,41 @@ std::string biped_without_meshes() {
 
 // In an earlier version, with the meshes of the legs missing, the hands were taken for feet, and
 // `init` failed because the COG was below them. Later, such a robot had no soles. The feet of this
-// robot are boxes, so that their inertias give the true soles.
+// robot are boxes, so that their inertias give the true soles; also those of a robot that is turned
+// against its root link.
 TEST(FirstSidecar, TheInertiasOfFeetGiveTheSolesWhereTheMeshesAreMissing) {
-  const TemporaryFolder folder;
-  const RobotModel whole(read({.name = "whole"}, folder));
-  const std::string file = folder.write("r.urdf", biped_without_meshes()).string();
-  const FirstSidecar sidecar = first_sidecar(file, folder.path() / "r");
-  ASSERT_EQ(sidecar.robot.soles.size(), 2u);
-  EXPECT_TRUE(has_item(sidecar, "Measure the soles and state them. The feet have no shapes"));
-  EXPECT_TRUE(says(sidecar.text, "the feet have no shapes, so Ayumi takes each foot as a box"));
-  const RobotModel model(load_robot_description(file));
-  for (const Side side : {Side::left, Side::right}) {
-    const Sole &found = model.sole(side), &real = whole.sole(side);
-    ASSERT_EQ(found.polygon.size(), real.polygon.size());
-    for (size_t i = 0; i < real.polygon.size(); ++i)
-      EXPECT_LT((found.polygon[i] - real.polygon[i]).norm(), 1e-6) << found.polygon[i].transpose();
-    EXPECT_LT((found.frame.translation() - real.frame.translation()).norm(), 1e-6);
+  for (const double facing : {0.0, 0.5}) {
+    SCOPED_TRACE(facing);
+    const TemporaryFolder folder;
+    const RobotModel whole(read({.name = "whole", .facing = facing}, folder));
+    const std::string file = folder.write("r.urdf", biped_without_meshes(facing)).string();
+    const FirstSidecar sidecar = first_sidecar(file, folder.path() / "r");
+    ASSERT_EQ(sidecar.robot.soles.size(), 2u);
+    EXPECT_TRUE(has_item(sidecar, "Measure the soles and state them. The feet have no shapes"));
+    EXPECT_TRUE(says(sidecar.text, "the feet have no shapes, so Ayumi takes each foot as a box"));
+    const RobotModel model(load_robot_description(file));
+    for (const Side side : {Side::left, Side::right}) {
+      const Sole &found = model.sole(side), &real = whole.sole(side);
+      ASSERT_EQ(found.polygon.size(), real.polygon.size());
+      for (size_t i = 0; i < real.polygon.size(); ++i)
+        EXPECT_LT((found.polygon[i] - real.polygon[i]).norm(), 1e-6)
+            << found.polygon[i].transpose();
+      EXPECT_LT((found.frame.translation() - real.frame.translation()).norm(), 1e-6);
+    }
+    EXPECT_TRUE(
+        std::any_of(sidecar.to_do.begin(), sidecar.to_do.end(), [](const std::string& item) {
+          return item.find("6 meshes are missing and left out: ") != std::string::npos &&
+                 item.find("r_foot.stl") == std::string::npos &&
+                 item.find(" and 3 more (`ayumi inspect` lists all of them). ") !=
+                     std::string::npos;
+        }));
+    EXPECT_TRUE(std::any_of(model.description().assumptions.begin(),
+                            model.description().assumptions.end(), [](const std::string& all) {
+                              return all.find("l_thigh.stl of link l_thigh") != std::string::npos &&
+                                     all.find("r_foot.stl of link r_foot") != std::string::npos;
+                            }));
+    EXPECT_TRUE(says(inferred_soles(model.description()), "masses and inertias of the feet"));
   }
-  EXPECT_TRUE(std::any_of(sidecar.to_do.begin(), sidecar.to_do.end(), [](const std::string& item) {
-    return item.find("6 meshes are missing and left out: ") != std::string::npos &&
-           item.find("r_foot.stl") == std::string::npos &&
-           item.find(" and 3 more (`ayumi inspect` lists all of them). ") != std::string::npos;
-  }));
-  EXPECT_TRUE(std::any_of(model.description().assumptions.begin(),
-                          model.description().assumptions.end(), [](const std::string& all) {
-                            return all.find("l_thigh.stl of link l_thigh") != std::string::npos &&
-                                   all.find("r_foot.stl of link r_foot") != std::string::npos;
-                          }));
 }
 
 // DARwIn-OP's file has inertias of bodies of more than 1 m. Feet without shapes get the inertia of

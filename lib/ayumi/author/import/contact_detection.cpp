@@ -284,33 +284,6 @@ double height_of(const RobotModel& model, const RawMotion& motion, const Soles& 
   return motion.base.empty() ? (soles[1 - foot][k].inverse() * center).z() : center.z();
 }
 
-// The detection returns `both` during the slow end or start of a swing. Where the sole comes to
-// rest before the middle of this interval, the contact begins (or ends) at the rest.
-void end_swings(const RobotModel& model, const RawMotion& motion, const Soles& soles,
-                std::vector<Support>& supports) {
-  // A foot this much above its place at rest has left it [m]. Chosen: above the rounding of tables.
-  // With half of the value, contact 1 of the imported walk ends at 1.678 s instead of 1.681 s; with
-  // twice, at 1.683 s.
-  constexpr double kAtRest = 1e-5;
-  for (const Stretch& run : stretches(supports)) {
-    if (run.support != Support::both) continue;
-    for (const int step : {1, -1}) {
-      const int edge = step > 0 ? run.first : run.last, outside = edge - step;
-      if (outside < 0 || outside >= static_cast<int>(supports.size())) continue;
-      if (supports[outside] == Support::none) continue;
-      const int foot = supports[outside] == Support::left ? 1 : 0;
-      const auto height = [&](int k) { return height_of(model, motion, soles, foot, k); };
-      const int middle = (run.first + run.last) / 2;
-      int least = edge;
-      while (least != middle && height(least + step) < height(least)) least += step;
-      if (least == middle) continue;  // the sole sinks all the time, because it takes up load
-      const double place = height(least);
-      for (int k = edge; k != least && height(k) > place + kAtRest; k += step)
-        supports[k] = supports[outside];
-    }
-  }
-}
-
 RobotState state_of(const RobotModel& model, const RawMotion& motion, Eigen::Index k) {
   RobotState state = model.rest_state();
   state.theta = motion.theta.row(k).transpose();
@@ -348,15 +321,13 @@ std::vector<Stretch> stretches(const std::vector<Support>& supports) {
   return result;
 }
 
-std::vector<Support> supports_from(const RobotModel& model, const RawMotion& motion,
-                                   const Soles& soles) {
+std::vector<Support> supports_with_swing_ends(const RobotModel& model, const RawMotion& motion,
+                                              const Soles& soles) {
   if (!motion.base.empty()) {
     std::vector<Support> result = supports_with_base(model, soles, motion.dt);
     carry_loaded_rows(model, motion, soles, result);
     result = without_blinks(std::move(result), motion.dt);
-    result = without_doubtful_moments(model, motion, soles, std::move(result));
-    end_swings(model, motion, soles, result);
-    return result;
+    return without_doubtful_moments(model, motion, soles, std::move(result));
   }
   std::vector<int> labels = relative_labels(model, soles, motion.dt);
   tell_low_swings(labels);
@@ -365,9 +336,35 @@ std::vector<Support> supports_from(const RobotModel& model, const RawMotion& mot
   for (const int label : labels)
     result.push_back(label == 1 ? Support::left : label == -1 ? Support::right : Support::both);
   result = without_blinks(std::move(result), motion.dt);
-  result = without_doubtful_moments(model, motion, soles, std::move(result));
-  end_swings(model, motion, soles, result);
-  return result;
+  return without_doubtful_moments(model, motion, soles, std::move(result));
+}
+
+// The detection returns `both` during the slow end or start of a swing. Where the sole comes to
+// rest before the middle of this interval, the contact begins (or ends) at the rest.
+std::vector<Support> without_swing_ends(const RobotModel& model, const RawMotion& motion,
+                                        const Soles& soles, std::vector<Support> supports) {
+  // A foot this much above its place at rest has left it [m]. Chosen: above the rounding of tables.
+  // With half of the value, contact 1 of the imported walk ends at 1.678 s instead of 1.681 s; with
+  // twice, at 1.683 s.
+  constexpr double kAtRest = 1e-5;
+  for (const Stretch& run : stretches(supports)) {
+    if (run.support != Support::both) continue;
+    for (const int step : {1, -1}) {
+      const int edge = step > 0 ? run.first : run.last, outside = edge - step;
+      if (outside < 0 || outside >= static_cast<int>(supports.size())) continue;
+      if (supports[outside] == Support::none) continue;
+      const int foot = supports[outside] == Support::left ? 1 : 0;
+      const auto height = [&](int k) { return height_of(model, motion, soles, foot, k); };
+      const int middle = (run.first + run.last) / 2;
+      int least = edge;
+      while (least != middle && height(least + step) < height(least)) least += step;
+      if (least == middle) continue;  // sinks all the time: it takes up load
+      const double place = height(least);
+      for (int k = edge; k != least && height(k) > place + kAtRest; k += step)
+        supports[k] = supports[outside];
+    }
+  }
+  return supports;
 }
 
 }  // namespace ayumi

@@ -19,10 +19,14 @@ double lowest_point(const RobotModel& model, const Soles& soles, int foot, int k
 
 /// The supporting feet in each row. Feet that stand do not move relative to each other. If the
 /// supporting foot changes without a phase in which both feet are at rest, both feet support the
-/// robot as long as they do not move apart. A contact begins when the foot comes to rest after a
-/// swing, and it ends when the next swing of this foot begins.
-std::vector<Support> supports_from(const RobotModel& model, const RawMotion& motion,
-                                   const Soles& soles);
+/// robot as long as they do not move apart. Slow ends and starts of swings belong to the support.
+std::vector<Support> supports_with_swing_ends(const RobotModel& model, const RawMotion& motion,
+                                              const Soles& soles);
+
+/// Takes the slow ends and starts of swings out of `supports`: a contact begins when the foot comes
+/// to rest after a swing, and it ends when the next swing of this foot begins.
+std::vector<Support> without_swing_ends(const RobotModel& model, const RawMotion& motion,
+                                        const Soles& soles, std::vector<Support> supports);
 
 /// Rows first..last (inclusive) with one support.
 struct Stretch {

@@ -1,11 +1,14 @@
 // With sole frames F (world) and S_k (in the base, row k), a foot that stands at F gives the base
 // the pose F S_k^-1. The next foothold of a foot B that lands beside A is F_A times the relative
-// pose S_A^-1 S_B while both support, made level.
+// pose S_A^-1 S_B while both support, made level. Feet that are not exactly level give the base two
+// poses while both support; within this difference, the base is where the ZMP is inside the
+// support.
 #include "ayumi/author/import/contact_reconstruction.hpp"
 
 #include <algorithm>
 #include <cmath>
 
+#include "ayumi/author/import/base_of_soles.hpp"
 #include "ayumi/author/import/contact_detection.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
@@ -35,24 +38,36 @@ Foothold foothold_of(const Isometry3d& pose) {
 
 class Grounding {
  public:
-  Grounding(const RobotModel& model, const RawMotion& motion)
+  Grounding(const RobotModel& model, const RawMotion& motion, const Soles& soles,
+            const std::vector<Support>& supports)
       : model_(model),
         motion_(motion),
-        soles_(soles_of(model, motion)),
-        supports_(motion.support.empty() ? supports_from(model, motion, soles_) : motion.support),
-        runs_(with_last_row(stretches(supports_))),
-        place_(runs_.size()) {}
-
-  GroundedMotion whole(const std::string& table) {
+        soles_(soles),
+        runs_(with_last_row(stretches(supports))),
+        place_(runs_.size()) {
     if (motion_.base.empty())
       place_feet();
     else
       read_feet();
+    if (!motion_.base.empty()) return;
+    find_disagreement();
+    levels_both_ = disagreement_.length() > kLevelFeet && soles_stay_parallel();
+  }
+
+  GroundedMotion whole(const std::string& table) const {
     GroundedMotion result;
     fill_phases(result);
-    if (!motion_.base.empty()) result.notes = notes();
+    result.notes = motion_.base.empty() ? notes_of_disagreement() : notes();
     fill_table(result.pattern, table);
     return result;
+  }
+
+  // The track of the base of a motion that has none.
+  std::vector<BasePose> base_by_feet() const {
+    std::vector<BasePose> track;
+    for (size_t r = 0; r < runs_.size(); ++r)
+      for (int k = runs_[r].first; k <= runs_[r].last; ++k) track.push_back(base_at(r, k));
+    return track;
   }
 
  private:
@@ -106,6 +121,58 @@ class Grounding {
                        "). Ayumi takes this time as flight. --contact-height and --contact-speed "
                        "decide when a sole counts as resting on the ground");
     return result;
+  }
+
+  // Feet that differ by less are taken as level [m]. Chosen: rounded angles give this difference.
+  static constexpr double kLevelFeet = 0.0001;
+
+  // How the feet differ about the place of the base while both support.
+  void find_disagreement() {
+    for (size_t r = 0; r < runs_.size(); ++r)
+      if (runs_[r].support == Support::both)
+        for (int k = runs_[r].first; k <= runs_[r].last; ++k)
+          disagreement_.add(base_by(r, 0, k), base_by(r, 1, k));
+  }
+
+  // Whether the soles are parallel in all rows, in swings too. Then the motion was made for level
+  // soles, and if the legs cannot keep them level, both soles are tilted.
+  bool soles_stay_parallel() const {
+    // Largest angle between the soles [rad]. Chosen: the error of legs of five joints in a walk is
+    // below 1 mrad; feet that roll over heel or toes turn by more than 10 mrad.
+    constexpr double kParallel = 0.003;
+    for (size_t k = 0; k < soles_[0].size(); ++k)
+      if (soles_[0][k].linear().col(2).cross(soles_[1][k].linear().col(2)).norm() > kParallel)
+        return false;
+    return true;
+  }
+
+  std::vector<std::string> notes_of_disagreement() const {
+    const double length = disagreement_.length();
+    if (length < kLevelFeet) return {};
+    return {
+        "the soles are not exactly level: while both stand, the places that they give the base "
+        "differ by up to " +
+        millimetres(length) +
+        ". Within this difference, the base is placed so that the ZMP leaves the support as "
+        "little as possible"};
+  }
+
+  std::vector<BasePose> base() const {
+    std::vector<BasePose> level = base_by_feet();
+    if (disagreement_.length() < kLevelFeet) return level;
+    SupportRegions support;
+    for (size_t r = 0; r < runs_.size(); ++r) {
+      std::vector<Eigen::Vector2d> corners;
+      for (int foot : {0, 1}) {
+        if (!carries(r, foot)) continue;
+        for (const Eigen::Vector2d& v : model_.sole(static_cast<Side>(foot)).polygon)
+          corners.push_back((place_[r][foot] * Vector3d(v.x(), v.y(), 0)).head<2>());
+      }
+      support.regions.emplace_back(std::move(corners));
+      for (int k = runs_[r].first; k <= runs_[r].last; ++k) support.of_row.push_back(r);
+    }
+    return base_with_zmp_inside(model_, motion_.theta, motion_.dt, std::move(level), support,
+                                disagreement_);
   }
 
   int middle(size_t run) const { return (runs_[run].first + runs_[run].last) / 2; }
@@ -203,14 +270,27 @@ class Grounding {
     return from + (to - from) * minimum_jerk(u).value;
   }
 
+  // The pose of the base if this foot is in its place.
+  Isometry3d base_by(size_t run, int foot, int k) const {
+    return place_[run][foot] * soles_[foot][k].inverse();
+  }
+
   BasePose base_at(size_t run, int k) const {
     const double right = share(run, k);
-    const Isometry3d by_left = place_[run][0] * soles_[0][k].inverse();
-    const Isometry3d by_right = place_[run][1] * soles_[1][k].inverse();
+    const Isometry3d by_left = base_by(run, 0, k), by_right = base_by(run, 1, k);
     BasePose base;
     base.position = (1 - right) * by_left.translation() + right * by_right.translation();
     base.attitude =
         elementary::between(Quaterniond(by_left.linear()), Quaterniond(by_right.linear()), right);
+    if (!levels_both_) return base;
+    // The mean of both tilts is level.
+    const Vector3d normals =
+        base.attitude * (soles_[0][k].linear().col(2) + soles_[1][k].linear().col(2));
+    base.attitude = exp_rotation(0.5 * normals.cross(Vector3d::UnitZ())) * base.attitude;
+    const auto position_by = [&](int foot) -> Vector3d {
+      return place_[run][foot].translation() - base.attitude * soles_[foot][k].translation();
+    };
+    base.position = (1 - right) * position_by(0) + right * position_by(1);
     return base;
   }
 
@@ -224,19 +304,38 @@ class Grounding {
     dense.cog = motion_.cog;
     dense.zmp = motion_.zmp;
     dense.fz = motion_.fz;
-    if (motion_.base.empty())
-      for (size_t r = 0; r < runs_.size(); ++r)
-        for (int k = runs_[r].first; k <= runs_[r].last; ++k) dense.base.push_back(base_at(r, k));
+    if (motion_.base.empty()) dense.base = base();
     pattern.table = std::move(dense);
   }
 
   const RobotModel& model_;
   const RawMotion& motion_;
-  const Soles soles_;
-  const std::vector<Support> supports_;
+  const Soles& soles_;
   const std::vector<Stretch> runs_;
+  SoleDisagreement disagreement_;
+  bool levels_both_ = false;  // both soles are leveled, not only those that stand
   std::vector<std::array<Isometry3d, 2>> place_;  // places of the feet, by run, then by Side
 };
+
+// The supports of a motion that does not state them. Without a base, heights are first known above
+// the other sole only. Where this sole is not exactly level, the times of contacts are wrong, so
+// they are found again with the base that follows.
+std::vector<Support> found_supports(const RobotModel& model, const RawMotion& motion,
+                                    const Soles& soles) {
+  const std::vector<Support> supports = supports_with_swing_ends(model, motion, soles);
+  const std::vector<Support> first = without_swing_ends(model, motion, soles, supports);
+  if (!motion.base.empty()) return first;
+  RawMotion placed;
+  placed.dt = motion.dt;
+  placed.theta = motion.theta;
+  placed.base = Grounding(model, motion, soles, first).base_by_feet();
+  return without_swing_ends(model, placed, soles_of(model, placed), supports);
+}
+
+std::vector<Support> supports_of(const RobotModel& model, const RawMotion& motion,
+                                 const Soles& soles) {
+  return motion.support.empty() ? found_supports(model, motion, soles) : motion.support;
+}
 
 void require_motion(const RobotModel& model, const RawMotion& motion) {
   if (!model.has_soles())
@@ -313,20 +412,21 @@ auto between_rows(double x, int rows, const ValueAt& value_at) {
 
 std::vector<Support> detect_supports(const RobotModel& model, const RawMotion& motion) {
   require_motion(model, motion);
-  return supports_from(model, motion, soles_of(model, motion));
+  return found_supports(model, motion, soles_of(model, motion));
 }
 
 GroundedMotion grounded(const RobotModel& model, const RawMotion& motion,
                         const std::string& table) {
   require_motion(model, motion);
-  return Grounding(model, motion).whole(table);
+  const Soles soles = soles_of(model, motion);
+  return Grounding(model, motion, soles, supports_of(model, motion, soles)).whole(table);
 }
 
 RawMotion put_on_ground(const RobotModel& model, RawMotion motion) {
   require_motion(model, motion);
   if (motion.base.empty()) return motion;
   const Soles soles = soles_of(model, motion);
-  if (motion.support.empty()) motion.support = supports_from(model, motion, soles);
+  motion.support = supports_of(model, motion, soles);
   const int n = static_cast<int>(motion.support.size());
   std::vector<int> known;
   std::vector<double> height(static_cast<size_t>(n));

@@ -63,13 +63,14 @@ struct FootContact {
 
 /// The motion as a pattern with a table named `table`: phases, level footholds and swings. If the
 /// motion has no base, the base follows from the footholds. In double support, it changes from one
-/// foot to the other by minimum jerk, and the motion starts with the feet at the origin and the
-/// heading along x.
+/// foot to the other by minimum jerk. Soles that are not exactly level leave a range for
+/// the base; in this range it is where the ZMP leaves the support least. The motion starts with the
+/// feet at the origin and the heading along x.
 struct GroundedMotion {
   Pattern pattern;
   std::vector<FootContact> contacts;  ///< contacts in the order in which they begin
-  /// Remarks in words about a motion with a base: how far the soles float, sink and slide, and when
-  /// it flies.
+  /// Remarks in words: how far the soles float, sink and slide, and when the motion flies; without
+  /// a base, how far the feet are from level.
   std::vector<std::string> notes = {};
 };
 /// Throws Error(bad_model) without soles, Error(bad_pattern) for fewer than 6 rows.

@@ -886,7 +886,7 @@ ImportedMotion read_motion(const std::string& bytes, const std::string& file,
   if (result.motion.support.empty()) result.filled.push_back("contacts: detected from the motion");
   if (result.motion.base.empty())
     result.filled.push_back(
-        "base: computed from the supporting feet, which stand level on the ground");
+        "base: computed from the supporting feet, whose soles are taken as level");
   return result;
 }
 

@@ -194,6 +194,16 @@ std::string sole_in_words(const RobotModel& model, Side side) {
          " wide, and reaches " + reach;
 }
 
+// `check` and `inspect` repeat this assumption as long as it is in the sidecar.
+std::string assumption_text(const RobotModel& model) {
+  const std::string soles = inferred_soles(model.description());
+  if (soles.empty()) return "";
+  return remark(
+             "check and inspect print this assumption. Delete it when the soles above are those "
+             "of the robot.") +
+         "  \"assumptions\": [" + json_text(soles) + "],\n";
+}
+
 std::string soles_text(const RobotModel& model, const RobotGuess& guess) {
   if (!model.has_soles())
     return remark(
@@ -209,7 +219,7 @@ std::string soles_text(const RobotModel& model, const RobotGuess& guess) {
              "the whole weight compresses hard rubber by 0.1 mm. Check these values by loading a "
              "foot. The softness of the soles can decide whether the robot falls when it walks.") +
          "  \"soles\": {\n" + sole_text(soles.at("left"), model, Side::left) + ",\n" +
-         sole_text(soles.at("right"), model, Side::right) + "\n  },\n";
+         sole_text(soles.at("right"), model, Side::right) + "\n  },\n" + assumption_text(model);
 }
 
 std::string home_text(const RobotModel& model, const RobotGuess& guess) {

@@ -207,23 +207,35 @@ int own_joints(const RobotModel& model, int body, int other) {
   return count;
 }
 
-// The corners, in the root frame, of the box that is parallel to the axes of the root frame and has
-// the mass, the centre of mass and the second moments of the body. Empty if there is no such box.
+// The corners, in the root frame, of the upright box that has the mass, the centre of mass and the
+// second moments of the body. Its sides are parallel to the body's principal axes along the ground.
+// Empty if there is no such box.
 Points inertia_box(const Body& body, const Isometry3d& pose) {
   const Inertia& inertia = body.inertia;
   if (!(inertia.mass > 0)) return {};
   const Eigen::Matrix3d tensor = pose.linear() * inertia.about_com * pose.linear().transpose();
+  const Eigen::Matrix3d moments =
+      0.5 * tensor.trace() * Eigen::Matrix3d::Identity() - tensor;  // integrals of r_i r_j dm
+  const double difference = moments(0, 0) - moments(1, 1);
+  const double turn =
+      0.5 * elementary::atan2(std::copysign(2, difference) * moments(0, 1), std::abs(difference));
+  const Eigen::Matrix3d axes = rpy_to_matrix({0, 0, turn});
   // A side a of a box of even density has the second moment m a^2 / 12.
-  const Vector3d squares =
-      12 / inertia.mass * (Vector3d::Constant(0.5 * tensor.trace()) - tensor.diagonal());
+  const Vector3d squares = 12 / inertia.mass * (axes.transpose() * moments * axes).diagonal();
   if (!(squares.minCoeff() > 0)) return {};
   const Vector3d half = 0.5 * squares.cwiseSqrt(), center = pose * inertia.com;
   Points corners;
   for (const double x : {-1, 1})
     for (const double y : {-1, 1})
       for (const double z : {-1, 1})
-        corners.push_back(center + half.cwiseProduct(Vector3d(x, y, z)));
+        corners.push_back(center + axes * half.cwiseProduct(Vector3d(x, y, z)));
   return corners;
+}
+
+Vector3d sizes_of(const Points& points) {
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& point : points) box.extend(point);
+  return box.sizes();
 }
 
 double highest_joint(const std::vector<Isometry3d>& poses) {
@@ -258,9 +270,7 @@ std::vector<Foot> feet_without_shapes(const RobotModel& model, const std::vector
   std::vector<Foot> feet;
   for (const int body : {bodies[0], bodies[1]}) {
     Foot foot{body, inertia_box(model.bodies()[body], poses[body])};
-    if (foot.points.empty() ||
-        (foot.points.back() - foot.points.front()).maxCoeff() > kLargestFootBox * tall)
-      return {};
+    if (foot.points.empty() || sizes_of(foot.points).maxCoeff() > kLargestFootBox * tall) return {};
     foot.lowest = lowest_of(foot.points);
     foot.of_inertia = true;
     feet.push_back(foot);
@@ -606,15 +616,15 @@ void find_soles(RobotGuess& guess) {
                                 "as well: " +
                                 text::join(more, ", "));
   }
+  std::vector<std::string> sizes;
   for (const auto& [side, sole] : soles)
-    robot.assumptions.push_back(
-        "the " + side + " sole belongs to the link " + sole.link + " and measures " +
-        size_text(extent(sole)) + " (length x width). Its outline has " +
-        std::to_string(sole.polygon.size()) + " corners and is " +
-        (feet[0].of_inertia
-             ? "the underside of the box that has the foot's mass and inertia, because the foot "
-               "has no shapes"
-             : "the hull of the points of the foot that are at most 1 mm above the ground"));
+    sizes.push_back(side + " " + sole.link + ", " + size_text(extent(sole)) + ", " +
+                    std::to_string(sole.polygon.size()) + " corners");
+  robot.assumptions.push_back(
+      std::string(kInferredSoles) +
+      (feet[0].of_inertia ? "the masses and inertias of the feet, because the feet have no shapes: "
+                          : "the points of the feet that are at most 1 mm above the ground: ") +
+      text::join(sizes, "; "));
   robot.soles = soles;
   if (feet[0].of_inertia) {
     guess.soles_of_inertia = true;

@@ -23,6 +23,9 @@ struct PlaceholderLimits {
   std::vector<std::string> joints;
 };
 
+/// The beginning of the assumption about soles that no file states.
+inline constexpr const char* kInferredSoles = "soles inferred from ";
+
 /// A robot that guess_robot() has completed.
 struct RobotGuess {
   RobotDescription robot;
