@@ -16,6 +16,7 @@
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/io/pattern/pattern_rewrite.hpp"
 #include "ayumi/math/rotation.hpp"
+#include "ayumi/model/gravity.hpp"
 #include "ayumi/motion/pattern_context.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "ayumi/report/replay.hpp"
@@ -51,6 +52,13 @@ constexpr int kTrunkRounds = 5;
 // turns back, the targets of its servos lead by up to 20 ms at 1 rad/s; when both hands of five
 // robots were dragged far up and down, no target exceeded a limit.
 constexpr double kLimbRoom = 0.02;
+
+// Largest speed and acceleration of a minimum jerk curve over the distance 1 in the time 1.
+// Derived: 15/8 in the middle, and 10/sqrt(3) at 21 % and 79 % of the time.
+constexpr double kPeakSpeed = 1.875, kPeakAcceleration = 5.7735;
+// Share of gravity with which the COG may accelerate where a drag changes its height. Chosen: half
+// of the weight stays on the ground.
+constexpr double kHeightShare = 0.5;
 
 // The value that is read from its text with this many decimals; zero has no sign.
 double rounded(double value, int decimals) { return std::stod(text::fixed(value, decimals)) + 0.0; }
@@ -151,19 +159,20 @@ double angle_in_unit(const AuthorMotion& motion, double angle) {
 }
 
 // A track that has no keys yet keeps its present value at the neighbouring keyframes, so that the
-// change stays between them.
+// change stays between them. A keyframe nearer than `least` [s] leaves no time for the change, so
+// the next one that is farther away is taken, if there is one.
 template <typename HasKey, typename Present>
-void hold_around(const AuthorMotion& motion, double time, const HasKey& has_key,
+void hold_around(const AuthorMotion& motion, double time, double least, const HasKey& has_key,
                  const Present& set_present) {
   const auto& frames = motion.task.pattern.keyframes;
   const Keyframe *before = nullptr, *after = nullptr;
   bool keyed_before = false, keyed_after = false;
   for (const Keyframe& frame : frames) {
     if (frame.t < time - kSameTime) {
-      before = &frame;
+      if (!before || frame.t <= time - least) before = &frame;
       keyed_before = keyed_before || has_key(frame);
     } else if (frame.t > time + kSameTime) {
-      if (!after) after = &frame;
+      if (!after || after->t < time + least) after = &frame;
       keyed_after = keyed_after || has_key(frame);
     }
   }
@@ -187,8 +196,10 @@ void set_joint(const AuthorMotion& motion, double time, int dof, double value, K
     }
     keys.set(t, {list, joint.name}, in_unit(motion, joint, angle));
   };
+  const double speed = motion.task.robot.limits(motion.task.profile).speed[dof];
+  const double change = std::abs(value - sample_near(motion.task.series, time).state.theta[dof]);
   hold_around(
-      motion, time,
+      motion, time, kPeakSpeed * change / speed,
       [&](const Keyframe& frame) { return frame.posture || frame.joints.contains(joint.name); },
       [&](double t) { set(t, sample_near(motion.task.series, t).state.theta[dof]); });
   set(time, value);
@@ -202,7 +213,8 @@ bool is_upright(const Vector3d& change) { return change.head<2>().norm() < 2 * k
 void drag_height(const AuthorMotion& motion, double time, double change, KeyEdits& keys) {
   const auto height = [&](double t) { return sample_near(motion.task.series, t).cog.z(); };
   hold_around(
-      motion, time, [](const Keyframe& frame) { return frame.cog_height.has_value(); },
+      motion, time, std::sqrt(kPeakAcceleration * std::abs(change) / (kHeightShare * kGravity)),
+      [](const Keyframe& frame) { return frame.cog_height.has_value(); },
       [&](double t) {
         keys.set(t, {"cog", "height"}, metres(height(t)));
       });
@@ -250,7 +262,7 @@ void drag_trunk(const AuthorMotion& motion, double time, const AuthorHandle& han
   const Vector3d turn = arm.cross(change) / arm.squaredNorm();
   if (!upright && turn.norm() * arm.norm() > kStill) {
     hold_around(
-        motion, time, [](const Keyframe& frame) { return frame.torso.has_value(); },
+        motion, time, 0, [](const Keyframe& frame) { return frame.torso.has_value(); },
         [&](double t) { keys.set(t, {"torso"}, attitude_value(motion, attitude(t))); });
     const Matrix3d wanted = exp_rotation(turn).toRotationMatrix() * now;
     keys.set(time, {"torso"}, attitude_value(motion, with_yaw_of(now, wanted)));
@@ -736,7 +748,7 @@ class Drag {
       for (int axis = 0; axis < 2; ++axis) {
         if (std::abs(change_[axis]) < kStill) continue;
         hold_around(
-            motion_, wish_.time, [&](const Keyframe& key) { return has_cog_key(key, axis); },
+            motion_, wish_.time, 0, [&](const Keyframe& key) { return has_cog_key(key, axis); },
             [&](double t) {
               keys.set(t, {"cog", names[axis]},
                        metres(sample_near(motion_.task.series, t).cog[axis]));

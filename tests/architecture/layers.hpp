@@ -70,12 +70,12 @@ inline std::string room_of(const std::string& path) {
 
 /// Headers with results, options and bounds of results, in the rooms that compute.
 /// finding_groups.hpp puts findings together for people, in the answer of check, on the live page
-/// and in a report.
+/// and in a report. has_zmp.hpp says which samples of a run have a ZMP.
 inline const std::set<std::string>& data_headers() {
   static const std::set<std::string> headers = {
       "check/consistency.hpp", "check/finding_groups.hpp", "limits/table_safety.hpp",
-      "repair/repair.hpp",     "sim/log_events.hpp",       "sim/simulate.hpp",
-      "sim/simulation_log.hpp"};
+      "repair/repair.hpp",     "sim/has_zmp.hpp",          "sim/log_events.hpp",
+      "sim/simulate.hpp",      "sim/simulation_log.hpp"};
   return headers;
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ayumi/base/significant.hpp"
 #include "ayumi/base/utf8.hpp"
 
 namespace ayumi {
@@ -11,6 +12,14 @@ TEST(Text, FirstItemsOfAList) {
   EXPECT_EQ(text::join_first({}, 2), "");
   EXPECT_EQ(text::join_first({"a", "b"}, 2), "a, b");
   EXPECT_EQ(text::join_first({"a", "b", "c", "d"}, 2), "a, b and 2 more");
+}
+
+TEST(Text, SignificantDigitsHaveNoExponent) {
+  EXPECT_EQ(text::significant(114213, 3), "114000");
+  EXPECT_EQ(text::significant(-999.6, 3), "-1000");
+  EXPECT_EQ(text::significant(99.96, 3), "100");
+  EXPECT_EQ(text::significant(0.012345, 3), "0.0123");
+  EXPECT_EQ(text::significant(0, 3), "0");
 }
 
 TEST(Text, LettersThatWereExchangedAreOneSlip) {

@@ -176,6 +176,10 @@ inline const std::vector<Broken>& mistakes() {
        "/keyframes/0/zmp: expected [x, y], found an array of length 1"},
       {"keyframes", R"([{"t": 1, "zmp": 3}])",
        "expected \"left\", \"right\", \"center\" or [x, y]"},
+      {"keyframes", R"([{"t": 1, "torso": [0, 10, 0]}])",
+       "/keyframes/0/torso: expected an object, found an array of length 3; the keys allowed here "
+       "are "
+       "roll, pitch, yaw"},
       {"keyframes", R"([{"t": 1, "cog": {"z": 1}}])", "/keyframes/0/cog/z: unknown key"},
       {"keyframes", R"([{"t": 1, "cog": {}}])",
        "/keyframes/0/cog: the object is empty; give x, y or height"},

@@ -58,6 +58,19 @@ TEST(UnitsInWords, AreThoseOfThePattern) {
   EXPECT_NE(need(false).find(" rad/s at l_elbow"), std::string::npos) << need(false);
 }
 
+// A large number has three digits and no exponent, unless the limit then reads the same.
+TEST(UnitsInWords, LargeNumbersHaveNoExponent) {
+  Finding finding;
+  finding.kind = FindingKind::joint_acceleration;
+  finding.unit = "rad/s^2";
+  finding.in_degrees = true;
+  finding.worst = 1993.4;
+  finding.limit = 500;
+  EXPECT_EQ(amount_text(finding), "114000 deg/s^2, limit 28600 deg/s^2");
+  finding.worst = 500.01;
+  EXPECT_EQ(amount_text(finding), "28648.5 deg/s^2, limit 28647.9 deg/s^2");
+}
+
 TEST(UnitsInWords, OfARefusedTableToo) {
   SafetyViolation violation;
   violation.joint = "l_elbow";

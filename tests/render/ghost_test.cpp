@@ -120,6 +120,10 @@ TEST(Heat, TheHomePostureIsCold) {
   SimulationSample s;
   s.state = at_limit.rest_state();
   for (const float heat : joint_heat(at_limit, "", s)) EXPECT_EQ(heat, 0);
+  s.state.theta[1] = -0.01;  // the servo yields a little
+  for (const float heat : joint_heat(at_limit, "", s)) EXPECT_EQ(heat, 0);
+  s.state.theta[1] = -0.1;
+  EXPECT_EQ(joint_heat(at_limit, "", s)[size_t(at_limit.dofs()[1].body)], 1);
   s.state.theta[1] = 1.95;
   EXPECT_GT(joint_heat(at_limit, "", s)[size_t(at_limit.dofs()[1].body)], 0.5);
 }

@@ -103,6 +103,26 @@ TEST(LogReading, FlightsAreWorthShowing) {
   EXPECT_NE(all.find("0.62"), std::string::npos) << all;
 }
 
+// After a flight, the knee is bent most a few milliseconds before the COG is lowest. These are not
+// two pictures.
+TEST(LogReading, ALandingIsShownOnce) {
+  SimulationLog log = test::box_run(test::box_robot());
+  for (size_t k = 0; k < log.samples.size(); ++k) {
+    SimulationSample& s = log.samples[k];
+    const double t = static_cast<double>(k) * log.dt;
+    const auto bump = [&](double at) { return std::exp(-std::pow((t - at) / 0.03, 2)); };
+    s.push_force.setZero();
+    if (t > 0.5999 && t < 0.6999) s.planned_contact = {false, false};
+    s.state.theta[1] = 1.2 * bump(0.745);
+    s.cog.z() += 0.02 * bump(0.65) - 0.4 * s.cog.z() * bump(0.755);
+  }
+  for (const int count : {4, 5, 6, 8}) {
+    const std::vector<double> times = telling_instants(log, count);
+    for (size_t i = 1; i < times.size(); ++i)
+      EXPECT_GT(times[i] - times[i - 1], 0.015) << count << " pictures, after " << times[i - 1];
+  }
+}
+
 // The made-up push lasts from 0.3 to 0.32 s.
 TEST(LogReading, PushesAreWorthShowing) {
   SimulationLog log = test::box_run(test::box_robot());

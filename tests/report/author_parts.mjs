@@ -11,7 +11,7 @@ import * as parts from "../../lib/ayumi/report/page/parts.js";
 import * as edits from "../../lib/ayumi/report/page/edits.js";
 import { fieldsOf, missingFields, optionalField, optionsOf, parsePattern, valueAt } from "../../lib/ayumi/report/page/fields.js";
 import { nameAmongOthers, unitOf } from "../../lib/ayumi/report/page/inspector.js";
-import { isKnown, partsOf } from "../../lib/ayumi/report/page/curves.js";
+import { isKnown, linePoints, partsOf } from "../../lib/ayumi/report/page/curves.js";
 import { strain, colorOf, heightOf, worstIn } from "../../lib/ayumi/report/page/strip_colors.js";
 import { sideBySide, nearDifferences } from "../../lib/ayumi/report/page/text_difference.js";
 
@@ -707,9 +707,16 @@ test("a load is on the first link, and an offset is that of a joint that turns",
 });
 
 test("in flight there is no ZMP, and its curve has a gap", () => {
-  const columns = { t: 0, fz: 1, "zmp.y": 2, "cog.y": 3 };
-  assert.equal(isKnown("zmp.y", [1.5, 1e-13, 0.01, 0], columns), false);
-  assert.equal(isKnown("cog.y", [1.5, 0, 0.01, 0], columns), true);
-  assert.equal(isKnown("zmp.y", [1.4, 80, 0.01, 0], columns), true);
+  const columns = { t: 0, fz: 1, "zmp.y": 2, "cog.y": 3, left_planned: 4, right_planned: 5, "ref_zmp.y": 6 };
+  const known = (name, fz, left) => isKnown(name, [1.5, fz, 0.01, 0, left, 0, 0.01], columns, 0.05);
+  assert.equal(known("zmp.y", 1e-13, 0), false);
+  assert.equal(known("cog.y", 0, 0), true);
+  assert.equal(known("zmp.y", 80, 1), true);
+  // The reference has a ZMP while a foot is planned to stand, whatever the force is.
+  assert.equal(known("ref_zmp.y", 1e-13, 0), false);
+  assert.equal(known("ref_zmp.y", 80, 0), false);
+  assert.equal(known("ref_zmp.y", 0, 1), true);
   assert.deepEqual(partsOf([null, [0, 1], [1, 1], null, null, [2, 3], null]), [[[0, 1], [1, 1]], [[2, 3]]]);
+  assert.equal(linePoints([[2, 3]]), "2.0,3.0 2.0,3.0");
+  assert.equal(linePoints([[0, 1], [1, 1]]), "0.0,1.0 1.0,1.0");
 });

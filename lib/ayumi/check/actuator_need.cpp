@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/significant.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/limits/amount_text.hpp"
 #include "ayumi/model/gravity.hpp"
@@ -42,9 +43,9 @@ std::vector<std::string> missing(const RobotModel& model, const ConsistencyRepor
       continue;
     }
     const ShownUnit unit = shown_unit(f->unit, f->in_degrees);
-    parts.push_back(text::brief(std::abs(f->worst) * unit.scale, 3) + " " + unit.name +
+    parts.push_back(text::significant(std::abs(f->worst) * unit.scale, 3) + " " + unit.name +
                     spec->actuator.after + " at " + f->where + " at " + text::fixed(f->at, 2) +
-                    " s (limit " + text::brief(std::abs(f->limit) * unit.scale, 3) + " " +
+                    " s (limit " + text::significant(std::abs(f->limit) * unit.scale, 3) + " " +
                     unit.name + ")");
   }
   return parts;

@@ -3,9 +3,11 @@
 // rates in the unit of the pattern's angles.
 
 #include <Eigen/Core>
+#include <cmath>
 #include <string>
 
 #include "ayumi/base/sentence.hpp"
+#include "ayumi/base/significant.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/limits/finding.hpp"
 
@@ -27,10 +29,14 @@ inline ShownUnit shown_unit(const std::string& unit, bool degrees) {
 /// see the difference.
 inline std::string amount_text(const Finding& finding) {
   const ShownUnit shown = shown_unit(finding.unit, finding.in_degrees);
+  // From this value on, three digits are enough. Chosen: only accelerations are so large.
+  constexpr double kLarge = 9999.5;
   const auto quantity = [&](double value, int more_digits) -> std::string {
     if (finding.unit == "m") return text::fixed(1000 * value, 1 + more_digits) + " mm";
     if (finding.unit == "1") return text::fixed(value, 2 + more_digits);
-    return text::brief(value * shown.scale, 4 + more_digits) + " " + shown.name;
+    const double number = value * shown.scale;
+    const int digits = std::abs(number) < kLarge ? 4 : 3;
+    return text::significant(number, digits + more_digits) + " " + shown.name;
   };
   // Largest number of additional digits. Chosen: a smaller difference is rounding of the
   // computation.

@@ -13,6 +13,7 @@
 // with the limits of both the joint and its encoder (target_range).
 #include <algorithm>
 
+#include "ayumi/base/significant.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/limits/amount_text.hpp"
 #include "ayumi/limits/judged_motion.hpp"
@@ -236,9 +237,10 @@ std::string table_position_infeasibility(const Finding& f, double) {
 
 std::string rest_infeasibility(const Finding& f, double) {
   const ShownUnit unit = shown_unit(f.unit, f.in_degrees);
-  return "the servo target of " + f.where + " moves at " + text::brief(f.worst * unit.scale, 3) +
-         " " + unit.name + " when the motion begins or ends, but `export` accepts at most " +
-         text::brief(f.limit * unit.scale, 3) + " " + unit.name;
+  return "the servo target of " + f.where + " moves at " +
+         text::significant(f.worst * unit.scale, 3) + " " + unit.name +
+         " when the motion begins or ends, but `export` accepts at most " +
+         text::significant(f.limit * unit.scale, 3) + " " + unit.name;
 }
 
 }  // namespace

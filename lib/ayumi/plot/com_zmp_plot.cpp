@@ -11,6 +11,7 @@
 #include "ayumi/plot/com_zmp_plot_parts.hpp"
 #include "ayumi/render/overlay.hpp"
 #include "ayumi/render/robot_surface.hpp"
+#include "ayumi/sim/has_zmp.hpp"
 
 namespace ayumi {
 namespace {
@@ -20,9 +21,9 @@ using Eigen::Vector2d;
 using Eigen::Vector4f;
 using Value = std::function<double(const SimulationSample&)>;
 
-constexpr double kGap = 12;          // space between panels [pixel]
-constexpr double kSmallText = 11;    // the smallest letters that can be read on a screen [pixel]
-constexpr double kBeforeFall = 0.5;  // time before a fall in which the fall is not yet visible [s]
+constexpr double kGap = 12;        // space between panels [pixel]
+constexpr double kSmallText = 11;  // the smallest letters that can be read on a screen [pixel]
+constexpr double kTopples = 0.05;  // last part of a fall, in which the values run away [s]
 
 struct PanelPlan {
   std::string name;  ///< name with the unit
@@ -82,13 +83,11 @@ Value component(Eigen::Vector3d SimulationSample::*quantity, int index) {
       [quantity, index](const SimulationSample& s) { return (s.*quantity)[index] / kMillimetre; };
 }
 
-/// The value is not a number where `is_there` is false: in flight there is no ZMP, although the log
-/// still has the last one.
+/// The value is not a number where `is_there` is false.
 Value where(const std::function<bool(const SimulationSample&)>& is_there, const Value& value) {
   return [=](const SimulationSample& s) { return is_there(s) ? value(s) : std::nan(""); };
 }
 
-bool is_loaded(const SimulationSample& s) { return s.fz > 0; }
 bool is_supported(const SimulationSample& s) {
   return s.planned_contact[0] || s.planned_contact[1];
 }
@@ -178,8 +177,8 @@ Value zmp_margin(const RobotModel& model) {
          support_corners(model, body_poses(model, s.state, *data), s.planned_contact))
       corners.push_back(corner.head<2>());
     const ConvexPolygon support(std::move(corners));
-    return support.empty() || !is_loaded(s) ? std::nan("")
-                                            : support.margin(s.zmp.head<2>()) / kMillimetre;
+    return support.empty() || !has_zmp(s) ? std::nan("")
+                                          : support.margin(s.zmp.head<2>()) / kMillimetre;
   };
 }
 
@@ -206,7 +205,7 @@ std::vector<PanelPlan> plan_panels(const LociOptions& options) {
   if (options.zmp)
     for (int i = 0; i < 2; ++i)
       panels.push_back({std::string("ZMP ") + axis[i] + " [mm]",
-                        where(is_loaded, component(&S::zmp, i)),
+                        where(has_zmp, component(&S::zmp, i)),
                         where(is_supported, component(&S::command_zmp, i)),
                         where(is_supported, component(&S::reference_zmp, i)), 20, 0.5});
   if (options.zmp && options.model && options.model->has_soles())
@@ -240,21 +239,17 @@ void extend(std::vector<double>& values, const std::vector<Vector2d>& points) {
     if (std::isfinite(point.y())) values.push_back(point.y());
 }
 
-/// The values of the runs that fell, from the time before their fall. They are used if nothing else
-/// determines the range of a panel.
-std::vector<double> values_before_falls(const PanelPlan& panel, const std::vector<LociRun>& runs,
-                                        const Interval& time) {
-  std::vector<double> values;
-  for (const double before : {kBeforeFall, 0.0})
-    for (const LociRun& run : runs)
-      if (values.empty() || before > 0)
-        extend(values, series(*run.log, panel.run,
-                              {time.low, std::min(time.high, run.log->result.fell_at - before)}));
-  return values;
+/// Adds the values of the runs that fell, from the time before their fall. They belong to the range
+/// of a panel if no run stands.
+void extend_before_falls(std::vector<double>& values, const PanelPlan& panel,
+                         const std::vector<LociRun>& runs, const Interval& time) {
+  for (const LociRun& run : runs)
+    extend(values, series(*run.log, panel.run,
+                          {time.low, std::min(time.high, run.log->result.fell_at - kTopples)}));
 }
 
-/// The range of the command and of the runs in which the robot stands, with a margin. The margin is
-/// wide if there is no such run.
+/// The range of the command and of the runs in which the robot stands, with a margin. If there is
+/// no such run, it is the range before the falls.
 Interval value_range(const PanelPlan& panel, const std::vector<LociRun>& runs,
                      const Interval& time) {
   std::vector<double> values;
@@ -273,15 +268,15 @@ Interval value_range(const PanelPlan& panel, const std::vector<LociRun>& runs,
     if (!has_fallen(*run.log)) extend(values, series(*run.log, panel.run, time));
   if (panel.reference && !has_fallen(*runs.back().log))
     extend(values, series(*runs.back().log, panel.reference, time));
-  if (values.empty()) values = values_before_falls(panel, runs, time);
+  const bool standing = std::any_of(runs.begin(), runs.end(),
+                                    [](const LociRun& run) { return !has_fallen(*run.log); });
+  if (!standing) extend_before_falls(values, panel, runs, time);
   if (panel.limits_in_view) values.insert(values.end(), panel.limits.begin(), panel.limits.end());
   if (values.empty()) return {0, panel.least > 0 ? panel.least : 1};
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   Interval range = {*low, *high};
   const double missing = std::max(0.0, panel.least - range.span()) / 2;
-  const bool standing = std::any_of(runs.begin(), runs.end(),
-                                    [](const LociRun& run) { return !has_fallen(*run.log); });
-  const double margin = (standing ? 0.1 : 0.5) * std::max(range.span(), panel.least) + missing;
+  const double margin = 0.1 * std::max(range.span(), panel.least) + missing;
   return {range.low - margin, range.high + margin};
 }
 

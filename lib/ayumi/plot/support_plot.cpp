@@ -4,6 +4,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/plot/com_zmp_plot_parts.hpp"
 #include "ayumi/render/robot_surface.hpp"
+#include "ayumi/sim/has_zmp.hpp"
 
 namespace ayumi {
 namespace {
@@ -69,7 +70,7 @@ std::vector<Vector2d> path_of(const SimulationLog& log, const Interval& time,
     if (t < time.low - 1e-9 || t > time.high + 1e-9) continue;
     const SimulationSample& s = log.samples[k];
     const bool planned = s.planned_contact[0] || s.planned_contact[1];
-    const bool there = quantity == &SimulationSample::zmp             ? s.fz > 0
+    const bool there = quantity == &SimulationSample::zmp             ? has_zmp(s)
                        : quantity == &SimulationSample::reference_zmp ? planned
                                                                       : true;
     const double none = std::nan("");  // value of the ZMP in flight

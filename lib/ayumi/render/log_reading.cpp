@@ -216,9 +216,10 @@ double news_at(const SimulationLog& log, double t, const std::vector<double>& ti
 }
 
 /// Takes candidates by weight until there are `count` times. No candidate is nearer to another than
-/// `apart`, except events, which may have any distance. No posture is taken twice. Of candidates
-/// with about the same weight, those come first in which the robot stands on other feet than at the
-/// nearest time that was taken, and among these the one that is farthest from this time.
+/// `apart`, except events, which may have any distance, and landings, which may be nearer. No
+/// posture is taken twice. Of candidates with about the same weight, those come first in which the
+/// robot stands on other feet than at the nearest time that was taken, and among these the one that
+/// is farthest from this time.
 void take(const SimulationLog& log, std::vector<Candidate> candidates, size_t count, double apart,
           std::vector<double>& times) {
   // Ratio of weights that are alike. Chosen: the steps of a walk differ by less.
@@ -226,6 +227,9 @@ void take(const SimulationLog& log, std::vector<Candidate> candidates, size_t co
   // Smallest distance of the largest moves from each other and from the ends [s]. Chosen: half of
   // the time of a quick step.
   constexpr double kShortest = 0.2;
+  // Smallest distance of a landing from other times [s]. Chosen: two pictures of one landing look
+  // the same; a landing from 5 mm lasts longer.
+  constexpr double kLanding = 0.05;
   double heaviest = 0;
   for (const Candidate& c : candidates)
     if (c.weight < kApexWeight) heaviest = std::max(heaviest, c.weight);
@@ -236,7 +240,8 @@ void take(const SimulationLog& log, std::vector<Candidate> candidates, size_t co
       double away = INFINITY, nearest = c.t;
       for (const double t : times)
         if (std::abs(t - c.t) < away) away = std::abs((nearest = t) - c.t);
-      const double gap = c.weight >= kApexWeight || c.looks_like_another ? 1e-6
+      const double gap = c.weight >= kApexWeight         ? 1e-6
+                         : c.looks_like_another          ? std::min(apart, kLanding)
                          : kAlike * c.weight >= heaviest ? std::min(apart, kShortest)
                                                          : apart;
       if (away < gap) continue;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ayumi/math/polygon.hpp"
+#include "ayumi/sim/has_zmp.hpp"
 
 // Marks on the ground lie in layers a fraction of a millimetre apart, so that the depth test keeps
 // their order: support polygon, trails, cross, ring, disc.
@@ -58,7 +59,7 @@ void add_trail(Triangles& target, const SimulationLog& log, double t, const Over
     const auto index =
         std::min(log.samples.size() - 1, static_cast<size_t>(std::llround((t - age) / log.dt)));
     const SimulationSample& sample = log.samples[index];
-    if (quantity == &SimulationSample::zmp && sample.fz <= 0) {  // there is no ZMP in flight
+    if (quantity == &SimulationSample::zmp && !has_zmp(sample)) {
       add_band(target, points, colors, plane.normal, 0.006 * plane.size);
       points.clear();
       colors.clear();
@@ -123,21 +124,25 @@ void add_pushes(Overlay& overlay, const std::vector<PushRecord>& pushed, double 
 }
 
 /// Returns 2/3 if a joint begins to be near a limit of its range, 1 at the limit, and less
-/// elsewhere.
+/// elsewhere. A joint whose home is at the limit is beyond it only if its servo yields by more than
+/// a limb's weight bends it.
 double position_use(const Dof& dof, double theta, double home) {
   // The part of the range that is near a limit. Chosen: a tenth is 10 to 20 degrees of most joints.
   // With half of the value, a warning comes late; with twice, strongly bent knees are always
   // marked.
   constexpr double kNear = 0.1;
+  // The part of the range by which a servo yields at most under a limb at rest. Chosen: HOAP-3's
+  // elbow yields by 0.6 % of its range under the weight of the forearm.
+  constexpr double kYield = 0.01;
   double use = 0;
   for (const double side : {-1.0, 1.0}) {
     const double limit = side < 0 ? dof.lower : dof.upper;
     const double left = side * (limit - theta), at_home = std::max(0.0, side * (limit - home));
     const double near = std::min(kNear * (dof.upper - dof.lower), at_home / 3);
-    use = std::max(use, left <= 0 && at_home > 0 ? 1.0
-                        : near > 0               ? 1 - left / (3 * near)
-                        : left < 0               ? 1.0
-                                                 : 0.0);
+    use = std::max(use, left <= 0 && at_home > 0                   ? 1.0
+                        : near > 0                                 ? 1 - left / (3 * near)
+                        : left < -kYield * (dof.upper - dof.lower) ? 1.0
+                                                                   : 0.0);
   }
   return use;
 }
@@ -246,7 +251,7 @@ Overlay make_overlay(const RobotModel& model, const SimulationLog& log,
   if (options.reference_zmp && (sample.planned_contact[0] || sample.planned_contact[1]))
     add_ring(target, plane.drop(sample.reference_zmp, 6), plane.normal, 0.026 * height,
              0.036 * height, overlay_color::kReferenceZmp);
-  if (options.zmp && sample.fz > 0)
+  if (options.zmp && has_zmp(sample))
     add_ring(target, plane.drop(sample.zmp, 7), plane.normal, 0, 0.020 * height,
              overlay_color::kZmp);
   if (options.forces) add_forces(target, sample, 9.81 * model.mass(), plane);

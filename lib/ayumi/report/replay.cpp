@@ -10,6 +10,7 @@
 #include "ayumi/render/robot_surface.hpp"
 #include "ayumi/render/scenery.hpp"
 #include "ayumi/report/html.hpp"
+#include "ayumi/sim/has_zmp.hpp"
 
 namespace ayumi {
 namespace {
@@ -167,6 +168,7 @@ std::string common_words(const RobotModel& model, double height, const Simulatio
                          double rate, double start, const std::string& label) {
   return "\"rate\":" + text::exact(rate) + ",\"height\":" + text::exact(height) +
          ",\"weight\":" + text::exact(9.80665 * model.mass()) +
+         ",\"least_zmp_force\":" + text::exact(kLeastZmpForce) +
          ",\"floor\":" + pose_words(floor_at(log, 0)) +
          ",\"ground_height\":" + text::exact(log.world.height) +
          ",\"bumps\":" + bumps_words(model, log) + ",\"start\":" + text::exact(start) +

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ayumi/base/counted.hpp"
+#include "ayumi/base/significant.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
 #include "ayumi/check/consistency.hpp"
@@ -18,13 +19,7 @@
 namespace ayumi::html {
 namespace {
 
-/// A number with this many significant digits; no exponent for large numbers.
-std::string significant(double value, int digits) {
-  const double whole = std::pow(10, digits);
-  if (std::abs(value) < whole - 0.5) return text::brief(value, digits);
-  const double last = std::pow(10, std::floor(std::log10(std::abs(value))) - (digits - 1));
-  return text::fixed(std::round(value / last) * last, 0);
-}
+using text::significant;
 
 std::string three_digits(double value) { return significant(value, 3); }
 std::string degrees(double radians) { return three_digits(radians * 180 / M_PI); }

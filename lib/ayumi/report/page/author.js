@@ -285,7 +285,7 @@ class Page {
     byId("scrub").setAttribute("aria-valuetext", `${time.toFixed(2)} seconds, ${support}`);
     const mm = (name) => fixed(1000 * row[this.columns[name]], 1);
     byId("readout").textContent = `t ${time.toFixed(3)} s · ${support} · COG ${["x", "y", "z"].map((a) => mm("cog." + a)).join(", ")} mm · ` +
-      `ZMP ${hasZmp(row, this.columns) ? ["x", "y"].map((a) => mm("zmp." + a)).join(", ") + " mm" : "none"} · f_z ${row[this.columns.fz].toFixed(1)} N`;
+      `ZMP ${hasZmp(row, this.columns, this.viewer.config.least_zmp_force) ? ["x", "y"].map((a) => mm("zmp." + a)).join(", ") + " mm" : "none"} · f_z ${row[this.columns.fz].toFixed(1)} N`;
     if (this.viewer.playing) this.previewed = null;
     this.moveCursor();
     this.lanes.moved(time);

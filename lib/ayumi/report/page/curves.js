@@ -1,12 +1,13 @@
 // Curves over time of the quantities that the reader chooses. Quantities of one unit share a panel.
 
 import { byId, element, fixed, refill, shape } from "./dom.js";
-import { rowAt, hasZmp } from "./series.js";
+import { rowAt, hasReferenceZmp, hasZmp } from "./series.js";
 
 const high = 84, top = 8, bottom = 6, letters = 11;
 const colors = ["#0b6fc2", "#c2570b", "#0a8754", "#9b2fae", "#b01e3c", "#6b6b00"];
-/// The smallest range of an axis; smaller changes are noise of the computation.
-const leastRange = { mm: 1, deg: 0.1, "deg/s": 1, N: 1, "N m": 0.01 };
+/// The smallest range of an axis. Changes that are much smaller count as none, so that a COG that
+/// moves by less than a millimetre is drawn as a straight line.
+const leastRange = { mm: 10, deg: 0.5, "deg/s": 1, N: 1, "N m": 0.01 };
 const axisWords = { x: "x (forward)", y: "y (left)", z: "z (up)" };
 
 /// The properties of a column for a reader: { label, unit, scale, group }; null if it is not a
@@ -37,8 +38,9 @@ export function levels(low, high_) {
   return values;
 }
 
-/// Whether a row has this quantity.
-export const isKnown = (name, row, columns) => !name.startsWith("zmp.") || hasZmp(row, columns);
+/// Whether a row has this quantity. `least` is the force [N] from which on there is a ZMP.
+export const isKnown = (name, row, columns, least) => name.startsWith("zmp.") ? hasZmp(row, columns, least)
+  : !name.startsWith("ref_zmp.") || hasReferenceZmp(row, columns);
 
 /// The parts of a curve between its gaps, which are null.
 export function partsOf(points) {
@@ -48,6 +50,11 @@ export function partsOf(points) {
     else if (parts.at(-1).length) parts.push([]);
   return parts.filter((part) => part.length);
 }
+
+/// The points of a line through a part, as SVG writes them. One point alone is written twice: with
+/// round ends, this line is a dot.
+export const linePoints = (part) => (part.length === 1 ? [part[0], part[0]] : part)
+  .map(([x, y]) => `${x.toFixed(1)},${y.toFixed(1)}`).join(" ");
 
 export class Curves {
   constructor(page) {
@@ -123,7 +130,7 @@ export class Curves {
   }
 
   draw() {
-    const { axis, state } = this.page;
+    const { axis, state, viewer } = this.page, least = viewer.config.least_zmp_force;
     for (const { list, svg } of this.panels || []) {
       const wide = svg.parentElement.clientWidth;
       if (!wide) continue;
@@ -139,7 +146,7 @@ export class Curves {
             const t = series.table[i * series.width];
             if (t < axis.from - 0.05 || t > axis.to + 0.05) continue;
             const row = series.table.subarray(i * series.width, (i + 1) * series.width);
-            if (!isKnown(one.name, row, series.columns)) {
+            if (!isKnown(one.name, row, series.columns, least)) {
               points.push(null);
               continue;
             }
@@ -174,8 +181,8 @@ export class Curves {
       for (const { points, dashes, color } of lines)
         for (const part of partsOf(points))
           inner.append(shape("polyline", { fill: "none", stroke: color, "stroke-width": dashes ? 1 : 1.6,
-            "stroke-dasharray": dashes, points: part.map(([t, value]) =>
-              `${(wide * axis.shareOf(t)).toFixed(1)},${y(value).toFixed(1)}`).join(" ") }));
+            "stroke-linecap": "round", "stroke-dasharray": part.length > 1 ? dashes : "",
+            points: linePoints(part.map(([t, value]) => [wide * axis.shareOf(t), y(value)])) }));
       inner.append(...words);  // above the curves, with a halo, so that no curve strikes them out
       svg.lastChild.replaceWith(inner);
       svg.querySelector("title").textContent = `${list.map((one) => one.label).join(", ")} in ${list[0].unit}` +
@@ -184,11 +191,11 @@ export class Curves {
   }
 
   moved(time) {
-    const { motion } = this.page;
+    const { motion, viewer } = this.page;
     const row = rowAt(motion, time);
     for (const { list } of this.panels || [])
       for (const one of list)
-        one.value.textContent = isKnown(one.name, row, motion.columns)
+        one.value.textContent = isKnown(one.name, row, motion.columns, viewer.config.least_zmp_force)
           ? `${fixed(one.scale * row[motion.columns[one.name]], 1)} ${one.unit}` : "none";
   }
 }

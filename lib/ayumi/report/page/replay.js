@@ -65,7 +65,7 @@ function showValues(t, row, push) {
   scrub.setAttribute("aria-valuetext", t.toFixed(2) + " seconds, " + support);
   byId("readout").textContent = "t " + t.toFixed(3) + " s · " + support + " · COG " +
     place("cog", row, ["x", "y", "z"]) + " · ZMP " +
-    (hasZmp(row, columns) ? place("zmp", row, ["x", "y"]) : "none") +
+    (hasZmp(row, columns, config.least_zmp_force) ? place("zmp", row, ["x", "y"]) : "none") +
     " · f_z " + digits(row[columns.fz]) + " N";
   byId("push-now").textContent = push ? "push " + push.text : "";
 }

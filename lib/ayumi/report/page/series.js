@@ -51,9 +51,10 @@ export function convexHull(points) {
   return sorted.length < 3 ? sorted : [...half(sorted), ...half([...sorted].reverse())];
 }
 
-// Vertical force below which there is no ZMP [N]. Definition: it is shown as 0.0 N; in flight, the
-// force of a row differs from 0 by rounding.
-const noForce = 0.05;
+/// Whether a row has a ZMP. In flight there is none, although the row still has a place. `least` is
+/// the force [N] from which on there is a ZMP, kLeastZmpForce of the program.
+export const hasZmp = (row, columns, least) => row[columns.fz] >= least;
 
-/// Whether a row has a ZMP. In flight there is none, although the row still has a place.
-export const hasZmp = (row, columns) => row[columns.fz] >= noForce;
+/// Whether a row has a reference ZMP: a foot is planned to stand.
+export const hasReferenceZmp = (row, columns) =>
+  ["left", "right"].some((side) => row[columns[side + "_planned"]] > 0.5);

@@ -9,7 +9,7 @@ import {
   PlaneGeometry, Quaternion, RingGeometry, Scene, ShadowMaterial, SphereGeometry, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
-import { clampTime, convexHull, sampleAt, hasZmp } from "./series.js";
+import { clampTime, convexHull, sampleAt, hasReferenceZmp, hasZmp } from "./series.js";
 
 const colors = { cog: 0xd9a312, zmp: 0xd6261f, reference: 0x0d4dbf, support: 0x1a73cc,
   force: 0x0d8c59, push: 0xc7409e };
@@ -361,10 +361,8 @@ export class Viewer {
       this.vector(side + "_force", row), 0.5 * size / this.config.weight));
     this.placeSupport(row, plane);
     for (const mark of m.forces) mark.visible = mark.visible && this.hooks.shown("forces");
-    // In flight there is no ZMP, although the row still has the last one.
-    const planned = ["left", "right"].some((side) => row[this.columns[side + "_planned"]] > 0.5);
-    m.zmp.visible = hasZmp(row, this.columns) && this.hooks.shown("zmp");
-    m.reference.visible = planned && this.hooks.shown("ref-zmp");
+    m.zmp.visible = hasZmp(row, this.columns, this.config.least_zmp_force) && this.hooks.shown("zmp");
+    m.reference.visible = hasReferenceZmp(row, this.columns) && this.hooks.shown("ref-zmp");
   }
 
   placePush(push, row) {
