@@ -25,6 +25,7 @@
 #include "ayumi/task/scenario_findings.hpp"
 #include "check_table.hpp"
 #include "file_stamp.hpp"
+#include "load_or_explain.hpp"
 #include "motion_words.hpp"
 #include "pattern_input.hpp"
 #include "signals.hpp"
@@ -168,40 +169,6 @@ std::vector<std::string> plot_joints_against_limits(const Task& task,
 
 // ---- the printed answer
 
-// A pattern that cannot be sampled: the changes that would help, and the first error.
-[[noreturn]] void explain(const Context& context, const Error& error, const std::string& file,
-                          const CheckCommand& options) {
-  const Pattern pattern = read_given_pattern(file, read_pairs(options.input.set, "--set"));
-  const RobotModel robot = load_robot(robot_of(pattern), robot_search(context));
-  CheckOptions judged;
-  judged.profile = options.input.profile.empty() ? pattern.profile : options.input.profile;
-  judged.tolerances = pattern.tolerances;
-  for (const auto& [kind, value] : read_pairs(options.tolerances, "--tolerance"))
-    judged.tolerances[kind] = value;
-  judged.threads = context.threads;
-  judged.degrees = pattern.degrees;
-  std::vector<Mistake> mistakes = likely_mistakes(robot, pattern, judged, context.progress());
-  try {
-    sample_at_servo_period(robot, pattern, {}, context.threads);
-  } catch (const Error& first) {
-    if (first.place().names_value)
-      std::erase_if(mistakes, [](const Mistake& mistake) { return !mistake.explains_all; });
-    throw with_mistakes(first, pattern, mistakes);
-  }
-  throw error;  // an error that no sample shows
-}
-
-Task load_or_explain(const Context& context, const std::string& file, const CheckCommand& options) {
-  try {
-    return load_pattern(context, file, options.input);
-  } catch (const Error& error) {
-    const bool is_of_numbers = error.code() == ErrorCode::bad_pattern &&
-                               !error.place().unknown_name && !error.place().names_remedy;
-    if (!is_of_numbers || file == "-") throw;
-    explain(context, error, file, options);
-  }
-}
-
 struct Checked {
   std::string words;
   Json json;
@@ -212,7 +179,7 @@ struct Checked {
 Checked checked_one(const Context& context, const CheckCommand& options, const std::string& file,
                     size_t rows_above = 0) {
   const auto begin = std::chrono::steady_clock::now();
-  const Task input = load_or_explain(context, file, options);
+  const Task input = load_or_explain(context, file, options.input, options.tolerances);
   const CheckOptions judged = check_options(input, options.tolerances);
   std::vector<Mistake> payloads;
   const Judgement judgement = judge(input, judged, &payloads);

@@ -39,21 +39,13 @@ struct Recordings {
   std::string names;
 };
 
-// Adds the sensors of another file.
-void add_sensors(const SensorTable& more, SensorTable& all) {
-  all.dt = more.dt;
-  if (more.foot_load.size() > 0) all.foot_load = more.foot_load;
-  if (more.acceleration.size() > 0) all.acceleration = more.acceleration;
-  if (more.gyro.size() > 0) all.gyro = more.gyro;
-}
-
 Recordings read_recordings(const CompareCommand& options, const RobotModel& model) {
   Recordings all;
   const auto add = [&](const std::string& file, bool sensors) {
     all.names += (all.names.empty() ? "" : ", ") + file;
     const std::string bytes = read_input(file);
     if (sensors || holds_sensors(bytes, file, model)) {
-      add_sensors(read_sensors_table(bytes, file, model, options.reading), all.sensors);
+      add_sensors(read_sensors_table(bytes, file, model, options.reading), all.sensors, file);
       return;
     }
     if (all.angles)

@@ -44,7 +44,8 @@ std::string joint_words(const IdentifiedJoint& j) {
     return words +
            "the command does not move this joint. The measured angle minus the command is " +
            text::fixed(j.offset.value / kIdentifiedDegree, 3) + " deg\n";
-  words += "delay " + estimate_words(j.delay, 1e-3, 2, "ms");
+  words += j.delay_is_lag ? "lag (delay and damping) " + estimate_words(j.lag, 1e-3, 2, "ms")
+                          : "delay " + estimate_words(j.delay, 1e-3, 2, "ms");
   if (j.kp.known)
     words += ", kp " + estimate_words(j.kp, 1, 0, "N m/rad");
   else if (j.kp.lower > 0)
@@ -79,7 +80,8 @@ Json json_of(const IdentifiedJoint& j) {
   if (!j.moved) return json;
   json["delay_s"] = json_of(j.delay);
   json["delay_is_lag"] = j.delay_is_lag;
-  json["lag_s"] = j.lag;
+  json["lag_s"] = j.lag.value;
+  json["lag_interval_s"] = {j.lag.lower, j.lag.upper};
   json["kp"] = json_of(j.kp);
   json["kd_and_viscous"] = json_of(j.damping);
   json["viscous"] = json_of(j.viscous);

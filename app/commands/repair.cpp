@@ -24,6 +24,7 @@
 #include "ayumi/repair/weighted_change.hpp"
 #include "ayumi/task/foothold_collisions.hpp"
 #include "check_table.hpp"
+#include "load_or_explain.hpp"
 #include "motion_words.hpp"
 #include "option_checks.hpp"
 #include "parameter_search.hpp"
@@ -261,7 +262,7 @@ std::string see_words(const RepairCommand& options, const RepairResult& result) 
 // Loads the pattern. If it cannot even be sampled, other values of its parameters may help.
 Task load(const Context& context, const RepairCommand& options) {
   try {
-    return load_pattern(context, options.pattern, options.input);
+    return load_or_explain(context, options.pattern, options.input, options.tolerances);
   } catch (const Error& error) {
     if (error.code() != ErrorCode::bad_pattern) throw;
     std::vector<PassingValues> values;

@@ -89,7 +89,7 @@ class MainJob {
   void note_file(const std::string& name) { folder_.files.push_back(name); }
 
   void check(Task& input);
-  void repair_pattern(Task& input, bool goals_reachable);
+  void repair_pattern(Task& input);
   void simulate(const Task& input);
   void export_tables(const Task& input);
   StreamedRun run_streamed(const Task& input, const std::string& name,
@@ -155,12 +155,12 @@ void MainJob::check(Task& input) {
   inconsistent_ = judged.reason();
   if (judged.motion_consistent) return;  // repair cannot change goals of VIIP, which are no keys
   if (options_.repair)
-    repair_pattern(input, judged.goal_need.text.empty());
+    repair_pattern(input);
   else
     say("repair", "not done (--repair looks for the nearest consistent pattern)");
 }
 
-void MainJob::repair_pattern(Task& input, bool goals_reachable) {
+void MainJob::repair_pattern(Task& input) {
   RepairOptions options = preferred_options(input.pattern);
   options.check = check_options(input);
   const RepairResult result = repair_task(input, options, context_.progress());
@@ -173,7 +173,7 @@ void MainJob::repair_pattern(Task& input, bool goals_reachable) {
   summary_["repair"] = Json::parse(repair_json(result));
   folder_.sections.emplace_back("repair", repair_json(result));
   if (result.status != RepairStatus::repaired) return;
-  if (goals_reachable) inconsistent_.clear();
+  inconsistent_.clear();
   input.series = result.series;
   input.pattern.correction = result.correction;
   write_pattern(output_->file("repaired.json"), input.pattern);

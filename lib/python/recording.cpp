@@ -175,8 +175,9 @@ void bind_identify(py::module_& m) {
       .def_readonly("backlash", &IdentifiedJoint::backlash, "Whole play [rad].")
       .def_readonly("offset", &IdentifiedJoint::offset,
                     "Mean distance of the unloaded joint from its command [rad].")
-      .def_readonly("lag", &IdentifiedJoint::lag,
-                    "Time by which the angle is behind a slow command [s].")
+      .def_readonly(
+          "lag", &IdentifiedJoint::lag,
+          "Time by which the angle is behind a slow command [s]: a value with its interval.")
       .def_readonly("mean_error", &IdentifiedJoint::mean_error,
                     "Mean error of the angle that remains with these constants [rad].")
       .def_readonly("largest_error", &IdentifiedJoint::largest_error,

@@ -468,6 +468,34 @@ TEST_F(CheckRepair, ReasonsOfExportAreListed) {
   EXPECT_NE(refused.err.find(reason), std::string::npos) << refused.err;
 }
 
+// The motion around a goal of VIIP only holds a posture, so it is consistent even if the goal is
+// impossible. A repair must not call such a pattern consistent when check does not.
+TEST_F(CheckRepair, AnImpossibleGoalIsNotCalledConsistent) {
+  Json jump = json_of(contents(AYUMI_SOURCE_DIR "/patterns/hoap1_jump.json"), true);
+  jump["phases"][1]["viip"]["jump"]["height"] = 0.3;
+  write(folder / "high.json", jump.dump());
+  EXPECT_EQ(ayumi({"check", "high.json"}).exit_code, 1);
+  const Output repaired = ayumi({"repair", "high.json", "-o", "out.json", "--json"});
+  EXPECT_EQ(repaired.exit_code, 4) << repaired.out;
+  const std::string reason = json_of(repaired.out).at("reasons").at(0);
+  EXPECT_NE(reason.find("height 0.3 m is out of range"), std::string::npos) << reason;
+  EXPECT_NE(reason.find("a repair does not change the goals"), std::string::npos) << reason;
+  EXPECT_EQ(folder.files(), std::vector<std::string>{"high.json"});
+}
+
+TEST_F(CheckRepair, RepairNamesTheLikelyCauseAsCheckDoes) {
+  Json walk = json_of(contents(kWalk), true);
+  for (Json& key : walk["keyframes"])
+    if (key["t"] == 0) key["zmp"] = {0.5, 0};
+  write(folder / "far.json", walk.dump());
+  const Output checked = ayumi({"check", "far.json", "-q"});
+  EXPECT_EQ(checked.exit_code, 3);
+  EXPECT_NE(checked.err.find("likely cause: /keyframes/0"), std::string::npos) << checked.err;
+  const Output repaired = ayumi({"repair", "far.json", "-o", "out.json", "-q"});
+  EXPECT_EQ(repaired.exit_code, 3);
+  EXPECT_EQ(repaired.err, checked.err);
+}
+
 TEST_F(CheckRepair, TolerancesAreListedAndSet) {
   const Output people = ayumi({"check", "--tolerances"});
   EXPECT_EQ(people.exit_code, 0);

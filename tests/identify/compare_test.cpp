@@ -10,6 +10,7 @@
 #include "ayumi/identify/exchanged_joints.hpp"
 #include "ayumi/io/table/recording.hpp"
 #include "ayumi/sim/simulate.hpp"
+#include "tests/support/error_message.hpp"
 #include "tests/support/hoap1.hpp"
 #include "tests/support/hoap1_walk.hpp"
 
@@ -112,6 +113,46 @@ TEST(Compare, LandingsAndLoadsOfTheFeetComeLate) {
     EXPECT_NEAR(landing.measured - landing.simulated, 0.009, 0.0011);
   const Comparison same = compared(angles_from(0), loads_from(0, 0), {.shift = 0});
   EXPECT_NEAR(same.loads[2].correlation, 1, 1e-9);
+}
+
+// The loads have a time column of the clock that timed the angles: the times count, and not the
+// numbers of the rows.
+TEST(Compare, LoadsAreComparedAtTheirOwnTimes) {
+  AngleTable angles = angles_from(0);
+  SensorTable loads = loads_from(0, 0);
+  angles.timed = loads.timed = true;
+  angles.clock_start = 100;
+  loads.clock_start = 100.020;
+  const Comparison late = compared(angles, loads);
+  EXPECT_NEAR(late.begin, 0.020, 2e-3);
+  for (const ComparedCurve& load : late.loads) EXPECT_NEAR(load.lag, 0.020, 5e-4) << load.name;
+  ASSERT_GE(late.landings.size(), 8u);
+  for (const ComparedLanding& landing : late.landings)
+    EXPECT_NEAR(landing.measured - landing.simulated, 0.020, 0.0011);
+  // Clocks that have no time in common say nothing.
+  loads.clock_start = 0;
+  const Comparison apart = compared(angles, loads);
+  for (const ComparedCurve& load : apart.loads) EXPECT_NEAR(load.lag, 0, 5e-4) << load.name;
+}
+
+// Two files of sensors that have other rates are read at the times of the first one.
+TEST(Compare, FilesOfSensorsAreBroughtToOneClock) {
+  SensorTable loads, turns, all;
+  loads.dt = 0.001;
+  loads.foot_load = Eigen::MatrixXd::Constant(1001, 2, 20);
+  loads.clock_start = 5;
+  turns.dt = 0.01;
+  turns.gyro.resize(101, 3);
+  for (Index k = 0; k < 101; ++k) turns.gyro.row(k).setConstant(5.1 + 0.01 * double(k));
+  turns.clock_start = 5.1;
+  add_sensors(loads, all, "loads.csv");
+  add_sensors(turns, all, "gyro.csv");
+  ASSERT_EQ(all.gyro.rows(), 1001);
+  EXPECT_NEAR(all.gyro(50, 0), 5.1, 1e-12);
+  EXPECT_NEAR(all.gyro(505, 1), 5.505, 1e-12);
+  EXPECT_NEAR(all.foot_load(505, 1), 20, 1e-12);
+  EXPECT_EQ(error_message([&] { add_sensors(turns, all, "b.csv"); }, ErrorCode::usage),
+            "b.csv: another file already holds angular velocities; give only one such file");
 }
 
 // Load cells of a real robot do not read 0 in the air. What they read there is subtracted, so that

@@ -146,7 +146,13 @@ TEST(Identify, NamesWhatItCannotTellApart) {
   EXPECT_NE(joint.confounded[0].find("delay and damping cannot be distinguished"),
             std::string::npos)
       << joint.confounded[0];
-  EXPECT_NEAR(joint.lag, servo.delay + (servo.kd + servo.viscous) / servo.kp, 0.001);
+  const double lag = servo.delay + (servo.kd + servo.viscous) / servo.kp;
+  EXPECT_NEAR(joint.lag.value, lag, 0.001);
+  EXPECT_TRUE(covers(joint.lag, lag)) << joint.lag.lower << " to " << joint.lag.upper;
+  // The delay alone is not known, and its interval says so.
+  ASSERT_TRUE(joint.delay_is_lag);
+  EXPECT_FALSE(joint.delay.known);
+  EXPECT_TRUE(covers(joint.delay, servo.delay));
 }
 
 TEST(Identify, TheSameForAnyNumberOfThreads) {

@@ -65,6 +65,7 @@ TEST(Recording, NamesAndUnitsMayBeWrittenInOtherWays) {
     EXPECT_NEAR(read.theta(0, knee), 0.1, 1e-12) << text;
     EXPECT_NEAR(read.theta(1, knee), 0.2, 1e-12) << text;
     EXPECT_TRUE(read.timed) << text;
+    ASSERT_TRUE(read.clock_start.has_value());
   }
 }
 

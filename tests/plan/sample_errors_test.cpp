@@ -121,6 +121,21 @@ TEST(SampleErrors, FootOutOfReach) {
                          "Lower the COG height"});
 }
 
+// The COG is half a metre in front of feet that stand: a shorter stride or another height of the COG
+// would not help.
+TEST(SampleErrors, CogBesideTheFeet) {
+  const std::string message = message_of([](Pattern& p) {
+    p.phases.resize(1);
+    p.keyframes.resize(1);
+    p.keyframes[0].t = 0;
+    p.keyframes[0].zmp.reset();
+    p.keyframes[0].cog_x = 0.5;
+    p.keyframes[0].cog_y = 0;
+  });
+  expect_words(message, {"walk.json: /phases/0", "out of reach by", "move the COG over the feet"});
+  EXPECT_EQ(message.find("stride"), std::string::npos) << message;
+}
+
 TEST(SampleErrors, CogTooHigh) {
   expect_words(message_of([](Pattern& p) { p.cog_height = 0.5; }),
                {"phases/0", "t = 0.000 s", "out of reach"});

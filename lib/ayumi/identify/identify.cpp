@@ -419,7 +419,8 @@ void find_sag(const JointRecording& recording, IdentifiedJoint& joint) {
   double x = 0, y = 0, xx = 0, xy = 0, n = 0, least = 1, most = 0;
   for (const Index k : recording.settled) {
     const double own = recording.own_share[k];
-    const double late = command_at(recording, recording.dt * static_cast<double>(k) - joint.lag);
+    const double late =
+        command_at(recording, recording.dt * static_cast<double>(k) - joint.lag.value);
     const double distance = recording.measured[k] - late;
     x += own, y += distance, xx += own * own, xy += own * distance, ++n;
     least = std::min(least, own), most = std::max(most, own);
@@ -453,7 +454,6 @@ void describe(const TypeFit& type, size_t i, const JointRecording& recording,
     return fit.covariance(static_cast<Index>(a), static_cast<Index>(b));
   };
   const double factor = fit.t_factor;
-  joint.lag = c.delay + c.damping;
   const double s = c.compliance, heavier = std::max(type.heavier.compliance, 1e-12),
                load_share = load_share_error(recording),
                half = compliance_half_width(type, recording);
@@ -463,6 +463,13 @@ void describe(const TypeFit& type, size_t i, const JointRecording& recording,
                          factor * deviation(fit, Constant::delay) + type.hold +
                              load_share * c.damping + std::abs(type.heavier.delay - c.delay),
                          0);
+  const double lag = c.delay + c.damping, variance = var(Constant::delay, Constant::delay) +
+                                                     2 * var(Constant::delay, Constant::damping) +
+                                                     var(Constant::damping, Constant::damping);
+  joint.lag = estimate(lag,
+                       factor * std::sqrt(std::max(0.0, variance)) +
+                           std::abs(type.heavier.delay + type.heavier.damping - lag),
+                       0);
   joint.kp = {1 / std::max(s, 1e-12), 1 / (s + half), s > half ? 1 / (s - half) : HUGE_VAL,
               half <= kKnown * s};
   const auto by_stiffness = [&](Constant which, double value, double other, double more) {
@@ -473,7 +480,11 @@ void describe(const TypeFit& type, size_t i, const JointRecording& recording,
   joint.damping = by_stiffness(Constant::damping, c.damping, type.heavier.damping,
                                type.step / std::max(s, 1e-12));
   // The parts of the delay are not known separately.
-  if (type.delay_takes_damping) joint.damping = {0, 0, HUGE_VAL, false};
+  if (type.delay_takes_damping) {
+    joint.delay.lower = 0;
+    joint.delay.known = false;
+    joint.damping = {0, 0, HUGE_VAL, false};
+  }
   joint.coulomb = by_stiffness(Constant::dry, c.dry, type.heavier.dry, 0);
   // The motor's damping and viscous friction have the same effect. The damping that the robot's
   // file states is subtracted, unless the recording contradicts this.
@@ -497,7 +508,7 @@ void describe(const TypeFit& type, size_t i, const JointRecording& recording,
     for (ServoEstimate* each : {&joint.kp, &joint.damping, &joint.viscous, &joint.coulomb})
       *each = {each->value, 0, HUGE_VAL, false};
   if (!joint.kp.known && servo.kp > 0)
-    joint.offset = offset_at_known_stiffness(recording, joint.lag, servo.kp);
+    joint.offset = offset_at_known_stiffness(recording, joint.lag.value, servo.kp);
   joint.confounded = Advice(type, joint, recording.load_known).words;
 }
 
@@ -538,7 +549,7 @@ std::string late_answer(const RobotModel& model, const std::vector<IdentifiedJoi
   for (const IdentifiedJoint& joint : joints) {
     if (!joint.moved) continue;
     const auto dof = static_cast<size_t>(model.find_dof(joint.joint));
-    lags.emplace_back(joint.lag - model.limits().servo[dof].lag(), joint.lag);
+    lags.emplace_back(joint.lag.value - model.limits().servo[dof].lag(), joint.lag.value);
   }
   if (lags.empty()) return "";
   std::sort(lags.begin(), lags.end());

@@ -35,17 +35,19 @@ struct ServoEstimate {
 /// The results for one joint.
 struct IdentifiedJoint {
   std::string joint, type;
-  bool moved = false;         ///< if false, only the mean difference from the command was found
-  bool delay_is_lag = false;  ///< the recording shows no damping: `delay` is the whole lag
-  ServoEstimate delay;        ///< delay [s]
-  ServoEstimate kp;           ///< stiffness [N m/rad]
-  ServoEstimate damping;      ///< kd + viscous friction [N m s/rad]
-  ServoEstimate viscous;      ///< damping minus the robot's kd [N m s/rad]
-  ServoEstimate coulomb;      ///< dry friction [N m]
-  ServoEstimate backlash;     ///< play of the gear [rad]
-  ServoEstimate offset;       ///< mean distance of the unloaded joint from its command [rad]
-  double lag = 0;             ///< time by which the angle is behind a slow command [s]
-  double sag = 0;             ///< change of the angle from the unloaded to the loaded foot [rad]
+  bool moved = false;  ///< if false, only the mean difference from the command was found
+  /// The recording shows no damping. The value of `delay` is then the whole lag; the delay alone is
+  /// between 0 and the upper end of the lag, and it is not known.
+  bool delay_is_lag = false;
+  ServoEstimate delay;     ///< delay [s]
+  ServoEstimate kp;        ///< stiffness [N m/rad]
+  ServoEstimate damping;   ///< kd + viscous friction [N m s/rad]
+  ServoEstimate viscous;   ///< damping minus the robot's kd [N m s/rad]
+  ServoEstimate coulomb;   ///< dry friction [N m]
+  ServoEstimate backlash;  ///< play of the gear [rad]
+  ServoEstimate offset;    ///< mean distance of the unloaded joint from its command [rad]
+  ServoEstimate lag;       ///< time by which the angle is behind a slow command [s]
+  double sag = 0;          ///< change of the angle from the unloaded to the loaded foot [rad]
   bool has_sag = false;
   /// Difference of the measured and the simulated angle [rad], and the time of the largest [s].
   double mean_error = 0, largest_error = 0, largest_at = 0;

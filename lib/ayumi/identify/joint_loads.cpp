@@ -83,7 +83,8 @@ Vector6d left_wrench(const RobotModel& model, const std::array<Eigen::Isometry3d
   return wrench;
 }
 
-VectorXd recorded_share(const SensorTable& sensors, Index rows, double dt) {
+/// The left share at the rows of the angles, which begin `after` [s] before the loads.
+VectorXd recorded_share(const SensorTable& sensors, double after, Index rows, double dt) {
   const Index count = sensors.foot_load.rows();
   if (count == 0) return {};
   const VectorXd left = low_pass(sensors.foot_load.col(0), sensors.dt, kShareCutoff),
@@ -92,7 +93,7 @@ VectorXd recorded_share(const SensorTable& sensors, Index rows, double dt) {
   if (!(mean > 0)) return {};
   VectorXd share(rows);
   for (Index k = 0; k < rows; ++k) {
-    const Index at = std::min(count - 1, static_cast<Index>(std::lround(k * dt / sensors.dt)));
+    const Index at = std::clamp<Index>(std::lround((k * dt - after) / sensors.dt), 0, count - 1);
     const double sum = left[at] + right[at];
     share[k] = sum > kLeastLoad * mean ? std::clamp(left[at] / sum, 0.0, 1.0) : 0.5;
   }
@@ -251,7 +252,8 @@ JointLoads joint_loads(const RobotModel& model, const RecordedMotion& motion, Ro
     return loads;
   }
   LoadsOnFeet feet(model, theta, measured.dt);
-  const VectorXd share = recorded_share(motion.sensors, rows, measured.dt);
+  const VectorXd share =
+      recorded_share(motion.sensors, first_row_after(measured, motion.sensors), rows, measured.dt);
   loads.left_share.resize(rows);
   double agreed = 0, single = 0;
   for (size_t k = 0; k < static_cast<size_t>(rows); ++k) {

@@ -417,10 +417,9 @@ std::string lost_rows_words(const LostRows& lost, const AngleTable& measured) {
 }
 
 std::string loads_rows_complaint(const SensorTable& loads, const AngleTable& measured) {
-  const Index rows =
-      std::max({loads.foot_load.rows(), loads.acceleration.rows(), loads.gyro.rows()});
+  const Index rows = loads.rows();
   if (loads.timed || rows == 0) return "";
-  const double lasts = loads.dt * static_cast<double>(rows - 1), asked = measured.duration(),
+  const double lasts = loads.duration(), asked = measured.duration(),
                row = std::max(loads.dt, measured.dt),
                // Two recorders of different rates may end up to a row apart.
       allowed = std::abs(loads.dt - measured.dt) < 1e-9 ? 0.5 * row : 1.5 * row;

@@ -51,6 +51,15 @@ Eigen::Matrix3d trunk_attitude(const SampleJob& job, double t,
 
 namespace {
 
+/// The largest distance of a point of a sole from the origin of its frame [m].
+double longest_reach_of_soles(const RobotModel& model) {
+  double longest = 0;
+  for (const Side side : {Side::left, Side::right})
+    for (const Eigen::Vector2d& corner : model.sole(side).polygon)
+      longest = std::max(longest, corner.norm());
+  return longest;
+}
+
 [[noreturn]] void complain_reach(const SampleJob& job, double t, const CommandSample& sample,
                                  const PostureSolution& solution) {
   const SourcePlace place = place_of_phase(job.pattern, job.feet.phase(t));
@@ -84,10 +93,26 @@ namespace {
              "shorten the step period, or move the ZMP towards the other foot (new walk "
              "--zmp-inwards)");
   const double height = sample.cog.z() - ground;
+  const double apart =
+                   (sample.feet[0].translation() - sample.feet[1].translation()).head<2>().norm(),
+               off = (sample.cog -
+                      0.5 * (sample.feet[0].translation() + sample.feet[1].translation()))
+                         .head<2>()
+                         .norm();
+  const bool beside = off > 0.5 * apart + longest_reach_of_soles(job.model);
   const std::string remedy =
+<<<<<<< HEAD
       std::string(". ") + (legs_are_folded(job.model, job.pattern, height) ? "Raise" : "Lower") +
       " the COG height (now " + text::fixed(height, 4) + " m above the soles)" +
       (job.tracks.torso ? ", tilt the torso less," : "") + " or shorten the stride";
+=======
+      beside ? "; move the COG over the feet (it is " + millimetres(off) +
+                   " from the middle between them, which follows from the keys of the COG or ZMP)"
+             : std::string("; ") +
+                   (legs_are_folded(job.model, job.pattern, height) ? "raise" : "lower") +
+                   " the COG height (here " + text::fixed(height, 4) + " m above the soles)" +
+                   (job.tracks.torso ? ", tilt the torso less," : "") + " or shorten the stride";
+>>>>>>> 9b0a2b0d18274dafbbee896dfaed6ca265d4c2b1
   if (solution.knee_flipped)
     fail(ErrorCode::bad_pattern, place, where + " knee would have to bend the wrong way" + remedy);
   const std::string limit =

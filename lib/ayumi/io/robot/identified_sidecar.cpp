@@ -31,7 +31,7 @@ OrderedJson servo_group(const IdentifiedJoint& joint, const IdentifiedJoint& sou
   const bool has_kp = source.kp.known || source.kp.lower > 0;
   const double kp = source.kp.known ? source.kp.value : has_kp ? source.kp.lower : own.kp;
   const double share = kp / source.kp.value;
-  const double lag = (joint.moved ? joint : source).lag;
+  const double lag = (joint.moved ? joint : source).lag.value;
   if (has_kp) group["kp"] = sidecar_number(kp);
   if (source.delay_is_lag || !has_kp) {
     group["kd"] = sidecar_number(kp * lag);

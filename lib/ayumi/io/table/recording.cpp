@@ -294,6 +294,13 @@ TimeColumn time_of(const NumberTable& table, const std::string& file) {
   return {};
 }
 
+/// The time of the first row [s]; empty if the table has no times.
+std::optional<double> clock_start(const NumberTable& table, const std::string& file) {
+  const TimeColumn time = time_of(table, file);
+  if (time.column < 0) return std::nullopt;
+  return time.unit * table.values(0, time.column);
+}
+
 // Messages count the rows from the first data row on, because the lines of a plain table are not
 // known here.
 double interval_of(const NumberTable& table, const RecordingOptions& options,
@@ -363,7 +370,8 @@ AngleTable named_angles(const std::string& bytes, const std::string& file, const
   const NumberTable table = number_table(plain_table_text(bytes, file), file);
   const double dt = interval_of(table, options, file);
   AngleTable result = empty_table(model, table.values.rows(), dt);
-  result.timed = time_of(table, file).column >= 0;
+  result.clock_start = clock_start(table, file);
+  result.timed = result.clock_start.has_value();
   bool any = false;
   for (size_t c = 0; c < table.columns.size(); ++c) {
     const JointColumn column = joint_column(table.columns[c], model, options.degrees, file);
@@ -461,7 +469,8 @@ SensorTable named_sensors(const std::string& bytes, const std::string& file,
   const NumberTable table = number_table(plain_table_text(bytes, file), file);
   SensorTable result;
   result.dt = interval_of(table, options, file);
-  result.timed = time_of(table, file).column >= 0;
+  result.clock_start = clock_start(table, file);
+  result.timed = result.clock_start.has_value();
   std::array<int, 2> foot = {-1, -1};
   for (const int side : {0, 1}) {
     const std::string name = side == 0 ? "left" : "right";

@@ -1,6 +1,8 @@
 #include "ayumi/repair/task/repair_task.hpp"
 
+#include "ayumi/check/actuator_need.hpp"
 #include "ayumi/check/consistency.hpp"
+#include "ayumi/control/viip_goals.hpp"
 #include "ayumi/repair/motion_change.hpp"
 #include "ayumi/sim/payload.hpp"
 #include "ayumi/task/payload_findings.hpp"
@@ -46,9 +48,7 @@ RepairResult of_robot_alone(const Task& task, const CheckOptions& options, Repai
   return loaded;
 }
 
-}  // namespace
-
-RepairResult repair_task(const Task& task, const RepairOptions& options, const Progress& progress) {
+RepairResult of_motion(const Task& task, const RepairOptions& options, const Progress& progress) {
   RepairResult alone = repair(task.robot, task.pattern, task.series, options, progress);
   const std::vector<CarriedMass> masses = payloads_of(task);
   if (masses.empty() || alone.partial) return alone;
@@ -64,6 +64,24 @@ RepairResult repair_task(const Task& task, const RepairOptions& options, const P
   if (loaded.status != RepairStatus::repaired || loaded.partial) return judged;
   loaded = of_robot_alone(task, options.check, std::move(loaded), judged.before);
   return loaded.check.consistent ? loaded : judged;
+}
+
+}  // namespace
+
+RepairResult repair_task(const Task& task, const RepairOptions& options, const Progress& progress) {
+  RepairResult result = of_motion(task, options, progress);
+  if (task.series.viip.empty()) return result;
+  const bool unchanged = result.status == RepairStatus::already_consistent;
+  const ActuatorNeed need = actuator_need(
+      task.robot,
+      keyed_goals(task.robot, unchanged ? task.series : result.series, task.pattern.controller),
+      options.check);
+  if (need.text.empty()) return result;
+  // A correction moves the posture and not the goals.
+  result.check.consistent = result.before.consistent = false;
+  if (result.status != RepairStatus::not_converged) result.status = RepairStatus::infeasible;
+  result.reasons.insert(result.reasons.begin(), need.text + "; a repair does not change the goals");
+  return result;
 }
 
 }  // namespace ayumi

@@ -1,5 +1,6 @@
 // The ground under the robot in MuJoCo: its pose, friction and motion, and the contact forces.
 #include <algorithm>
+#include <cmath>
 
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/sim/plant_mujoco/mujoco_impl.hpp"
@@ -37,6 +38,42 @@ void MujocoPlant::Impl::set_friction() {
                     (data.position[point->body] + data.rotation[point->body] * point->position)
               : Vector3d(Eigen::Map<const Vector3d>(d->geom_xpos + 3 * g));
     m->geom_friction[3 * g] = ground.friction(to_ground * place);
+  }
+}
+
+const ContactPoint& MujocoPlant::Impl::point_of_contact(const mjContact& contact) const {
+  const int first = point_of[static_cast<size_t>(contact.geom1)],
+            second = point_of[static_cast<size_t>(contact.geom2)],
+            number = second != -1 ? second : first;
+  if (number >= 0) return points[static_cast<size_t>(number)];
+  // A plate is the whole sole of a foot, whose points are equally stiff.
+  return *std::find_if(points.begin(), points.end(),
+                       [&](const ContactPoint& point) { return point.side == -2 - number; });
+}
+
+// Soles whose stiffness the robot's file states are as soft in MuJoCo; other contacts have MuJoCo's
+// own stiffness. The normal force of a contact with the stiffness k and the damping time T at the
+// end of a step of h is -k (gap + h v) - k T v, with v = v0 + h a. So it is
+//   -(a + v0/h + gap/(h (h + T))) / R  with R = 1/(h k (h + T)), as in the plant of Ayumi.
+// MuJoCo computes -(a - aref) / R for each row of a contact. Along the ground, the contacts keep
+// MuJoCo's own small R, because soles that yield along the ground creep. The cone of friction in
+// MuJoCo's scaled forces has the slope mu = friction sqrt(R along the ground / R of the normal).
+void MujocoPlant::Impl::soften_contacts(double h) {
+  if (!soft_side[0] && !soft_side[1]) return;
+  for (int i = 0; i < d->ncon; ++i) {
+    mjContact& contact = d->contact[i];
+    const int row = contact.efc_address;
+    if (row < 0) continue;
+    const ContactPoint& point = point_of_contact(contact);
+    if (point.side < 0 || !soft_side[static_cast<size_t>(point.side)]) continue;
+    const double time = h + point.damping_time;
+    d->efc_R[row] = 1 / (h * point.stiffness * time);
+    d->efc_D[row] = 1 / d->efc_R[row];
+    d->efc_KBIP[4 * row + 1] = 1 / h;
+    d->efc_aref[row] = -(d->efc_vel[row] + (d->efc_pos[row] - d->efc_margin[row]) / time) / h;
+    if (contact.dim > 1)
+      contact.mu = std::max<mjtNum>(
+          mjMINMU, contact.friction[0] * std::sqrt(d->efc_R[row + 1] / d->efc_R[row]));
   }
 }
 

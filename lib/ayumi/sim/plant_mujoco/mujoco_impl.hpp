@@ -32,6 +32,8 @@ struct MujocoPlant::Impl {
     // The points are small balls that are fixed to their bodies, so a cylinder rolls on its eight
     // corners.
     std::erase_if(points, [](const ContactPoint& point) { return point.rim > 0; });
+    for (const auto& [side, sole] : robot.description().soles)
+      soft_side[side == "right"] = sole.stiffness > 0;
     build(false);
   }
   Impl(const Impl& o)
@@ -48,6 +50,7 @@ struct MujocoPlant::Impl {
         body(o.body),
         gear(o.gear),
         point_of(o.point_of),
+        soft_side(o.soft_side),
         plate(o.plate),
         floor_id(o.floor_id),
         loaded(o.loaded),
@@ -74,6 +77,8 @@ struct MujocoPlant::Impl {
   void take_bumps(const std::vector<RisingDisc>& now);
   void place_floor();
   void set_friction();
+  const ContactPoint& point_of_contact(const mjContact& contact) const;
+  void soften_contacts(double h);
   void move_ground(double dt);
   void apply(const ExternalWrench& w);
   void check_input(const Eigen::VectorXd& targets, const StepInput& input, double dt) const;
@@ -103,6 +108,8 @@ struct MujocoPlant::Impl {
   std::vector<int> gear;            // index of the joint of each dof's gear; -1 if there is none
   // Number of the point of each geom; -1 for the ground, and -2 - side for a plate.
   std::vector<int> point_of;
+  // Whether the robot's file states the stiffness of the sole, by Side.
+  std::array<bool, 2> soft_side = {false, false};
   std::array<int, 2> plate = {-1, -1};
   int floor_id = 0;
   std::optional<RobotModel> loaded;

@@ -380,6 +380,7 @@ void MujocoPlant::Impl::step(const VectorXd& targets, const StepInput& input, do
   set_friction();
   before = Eigen::Map<const VectorXd>(d->qvel, m->nv);
   mj_step1(m.get(), d.get());
+  soften_contacts(h);
   move_ground(h);
   integrate();
   find_loads(h);
