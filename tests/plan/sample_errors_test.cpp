@@ -132,7 +132,7 @@ TEST(SampleErrors, CogBesideTheFeet) {
     p.keyframes[0].cog_x = 0.5;
     p.keyframes[0].cog_y = 0;
   });
-  expect_words(message, {"walk.json: /phases/0", "out of reach by", "move the COG over the feet"});
+  expect_words(message, {"walk.json: /phases/0", "out of reach by", "Move the COG over the feet"});
   EXPECT_EQ(message.find("stride"), std::string::npos) << message;
 }
 

@@ -101,18 +101,12 @@ double longest_reach_of_soles(const RobotModel& model) {
                          .norm();
   const bool beside = off > 0.5 * apart + longest_reach_of_soles(job.model);
   const std::string remedy =
-<<<<<<< HEAD
-      std::string(". ") + (legs_are_folded(job.model, job.pattern, height) ? "Raise" : "Lower") +
-      " the COG height (now " + text::fixed(height, 4) + " m above the soles)" +
-      (job.tracks.torso ? ", tilt the torso less," : "") + " or shorten the stride";
-=======
-      beside ? "; move the COG over the feet (it is " + millimetres(off) +
-                   " from the middle between them, which follows from the keys of the COG or ZMP)"
-             : std::string("; ") +
-                   (legs_are_folded(job.model, job.pattern, height) ? "raise" : "lower") +
-                   " the COG height (here " + text::fixed(height, 4) + " m above the soles)" +
+      beside ? ". Move the COG over the feet. Its distance from the middle between them is " +
+                   millimetres(off) + ", which follows from the keys of the COG or ZMP"
+             : std::string(". ") +
+                   (legs_are_folded(job.model, job.pattern, height) ? "Raise" : "Lower") +
+                   " the COG height (now " + text::fixed(height, 4) + " m above the soles)" +
                    (job.tracks.torso ? ", tilt the torso less," : "") + " or shorten the stride";
->>>>>>> 9b0a2b0d18274dafbbee896dfaed6ca265d4c2b1
   if (solution.knee_flipped)
     fail(ErrorCode::bad_pattern, place, where + " knee would have to bend the wrong way" + remedy);
   const std::string limit =
