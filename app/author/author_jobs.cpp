@@ -90,19 +90,10 @@ AuthorResult repair_job(const AuthorMotion& motion, const std::string& text,
   RepairOptions options = preferred_options(task.pattern);
   options.check = check_options(task);
   const RepairResult result = repair_task(task, options, progress);
-  if (result.status == RepairStatus::already_consistent) {
-    const std::string& goals = motion.judgement.goal_need.text;
-    if (goals.empty())
-      return {result_json("repair", "The pattern is consistent, so nothing has to change.", true,
-                          OrderedJson::array()),
-              {}};
-    return {
-        result_json("repair",
-                    "The motion is consistent, but a goal is not possible. Repair cannot change "
-                    "goals of VIIP.",
-                    false, OrderedJson::array({goals})),
-        {}};
-  }
+  if (result.status == RepairStatus::already_consistent)
+    return {result_json("repair", "The pattern is consistent, so nothing has to change.", true,
+                        OrderedJson::array()),
+            {}};
   const bool repaired = result.status == RepairStatus::repaired;
   OrderedJson lines =
       json_lines_of(motion_words(task.robot, result.moved, result.before, result.check));

@@ -147,21 +147,13 @@ std::string start_words(const Pattern& pattern, const GeneratedMotion& made) {
   return out + ". No motion through these places was found\n";
 }
 
-// `goal_need` says which goals of VIIP are not possible. It is empty if all of them are possible.
 std::string in_words(const RepairCommand& options, const Task& input, const GeneratedMotion& made,
-                     const std::vector<Mistake>& mistakes, const std::string& goal_need,
-                     double wall) {
+                     const std::vector<Mistake>& mistakes, double wall) {
   const RobotModel& model = input.robot;
   const RepairResult& result = made.repair;
   std::string out = options.pattern + ": " +
-                    (result.partial       ? "stopped. The result is partial"
-                     : !goal_need.empty() ? "the motion is consistent, but a goal is not possible"
-                                          : words_of(result.status)) +
+                    (result.partial ? "stopped. The result is partial" : words_of(result.status)) +
                     "\n";
-  if (!goal_need.empty())
-    return out + "  repair cannot change goals of VIIP, so " + options.out +
-           " is a copy of the pattern, and this copy does not pass the check\n  " + goal_need +
-           "\n";
   if (result.status == RepairStatus::already_consistent)
     return out + "  nothing had to change, so " + options.out + " is a copy of the pattern\n";
   out += steering_words(options, input.pattern);
@@ -477,11 +469,7 @@ void repair_pattern(Context& context, RepairCommand options) {
                  {fs::path(options.pattern).stem().string() + ", before and after its repair",
                   input.profile},
                  options.plot);
-  std::string goal_need;
-  if (result.status == RepairStatus::already_consistent && !input.series.viip.empty())
-    goal_need = judge(input, check_options(input, options.tolerances)).goal_need.text;
-  context.print(in_words(options, input, made, mistakes, goal_need, wall) + in_words(values) +
-                in_words(pace) +
+  context.print(in_words(options, input, made, mistakes, wall) + in_words(values) + in_words(pace) +
                 (written ? "  written to " + options.out + "\n" + see_words(options, result)
                          : "  nothing written\n"));
   nlohmann::ordered_json json = nlohmann::ordered_json::parse(repair_json(result));

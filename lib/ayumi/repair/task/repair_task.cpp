@@ -80,7 +80,7 @@ RepairResult repair_task(const Task& task, const RepairOptions& options, const P
   // A correction moves the posture and not the goals.
   result.check.consistent = result.before.consistent = false;
   if (result.status != RepairStatus::not_converged) result.status = RepairStatus::infeasible;
-  result.reasons.insert(result.reasons.begin(), need.text + "; a repair does not change the goals");
+  result.reasons.insert(result.reasons.begin(), need.text + ". A repair does not change the goals");
   return result;
 }
 
