@@ -435,6 +435,23 @@ TEST_F(CheckRepair, CheckSaysWhereEachTrackComesFrom) {
   EXPECT_EQ(json.at("sampled_from").at("zmp").get<std::string>().find("keys"), 0u);
 }
 
+TEST_F(CheckRepair, ReasonsOfExportAreListed) {
+  const Json accepted = json_of(ayumi({"check", kWalk, "-q", "--json"}).out);
+  EXPECT_TRUE(accepted.at("export_refuses").empty()) << accepted.dump();
+  const std::string goals = AYUMI_SOURCE_DIR "/patterns/hoap1_viip_walk.json";
+  const Output checked = ayumi({"check", goals, "-q", "--json"});
+  EXPECT_EQ(checked.exit_code, 0);
+  const Json json = json_of(checked.out);
+  ASSERT_EQ(json.at("export_refuses").size(), 1u) << json.dump();
+  const std::string reason = json.at("export_refuses")[0];
+  EXPECT_NE(ayumi({"check", goals})
+                .out.find("`export` would refuse the table of this pattern: " + reason),
+            std::string::npos);
+  const Output refused = ayumi({"export", goals, "--format", "hoap", "-o", "t.csv"});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_NE(refused.err.find(reason), std::string::npos) << refused.err;
+}
+
 // In an earlier version, repair called such a pattern consistent, and check called it inconsistent.
 // The motion around a goal of VIIP only holds a posture, so it is consistent even if the goal is
 // impossible. A repair must not call such a pattern consistent when check does not.
