@@ -126,7 +126,7 @@ TEST(ResultsJson, SafetyNamesEveryViolation) {
   SafetyReport report;
   report.safe = false;
   report.ramp = 2;
-  report.violations = {{"step", "l_knee", 1.234, 61, 57, "counts", 3}};
+  report.violations = {{TableLimit::step, "l_knee", 1.234, 61, 57, "counts", 3}};
   const Json json = test::json_of(safety_json(report));
   EXPECT_EQ(json.at("safe"), false);
   EXPECT_EQ(json.at("ramp_s"), 2);
