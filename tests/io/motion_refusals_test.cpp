@@ -345,17 +345,21 @@ TEST(MotionRefusals, ArraysWithoutNumbers) {
                     angles = npy_numbers(std::vector<double>(rows * joints), {rows, joints}),
                     words = npy_words(std::vector<std::string>(rows * joints, "0"), {rows, joints}),
                     places = npy_numbers(std::vector<double>(rows * 3), {rows, 1, 3}),
-                    none = npy_numbers({}, {rows, 0, 3}), turns = npy_numbers({}, {rows, 0, 4});
-  const auto archive = [&](const std::string& joint_pos, const std::string& body_pos) {
+                    none = npy_numbers({}, {rows, 0, 3}),
+                    turns = npy_numbers(std::vector<double>(rows * 4, 0.5), {rows, 1, 4}),
+                    no_turns = npy_numbers({}, {rows, 0, 4});
+  const auto archive = [&](const std::string& joint_pos, const std::string& body_pos,
+                           const std::string& body_quat) {
     return zip_of({{"fps.npy", fps},
                    {"joint_pos.npy", joint_pos},
                    {"body_pos_w.npy", body_pos},
-                   {"body_quat_w.npy", turns}});
+                   {"body_quat_w.npy", body_quat}});
   };
-  expect_refused({{archive(words, places), "joint_pos holds text; save it as numbers"},
-                  {archive(angles, none), "body_pos_w is empty; save the motion again"},
-                  {archive(angles, places), "body_quat_w is empty; save the motion again"}},
-                 "m.npz");
+  expect_refused(
+      {{archive(words, places, turns), "joint_pos holds text; save it as numbers"},
+       {archive(angles, none, turns), "body_pos_w is empty; save the motion again"},
+       {archive(angles, places, no_turns), "body_quat_w is empty; save the motion again"}},
+      "m.npz");
 }
 
 TEST(MotionRefusals, FilesBesideAFileOfAngles) {
