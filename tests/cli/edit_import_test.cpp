@@ -368,6 +368,16 @@ TEST_F(Edit, SequencesComeBack) {
   EXPECT_LT(double(summary["max_foot_penetration_m"]), 0.004);
 }
 
+// The motion keeps the name that the file gives it, so that the file comes back to the byte.
+TEST_F(Edit, TheNameOfAMotionComesBack) {
+  ASSERT_EQ(ayumi({"export", kWalk, "--format", "play-motion2", "-o", "first.yaml"}).exit_code, 0);
+  const Output read = ayumi({"import", "first.yaml", "--robot", "hoap1", "-o", "back.json"});
+  ASSERT_EQ(read.exit_code, 0) << read.err;
+  ASSERT_EQ(
+      ayumi({"export", "back.json", "--format", "play-motion2", "-o", "again.yaml"}).exit_code, 0);
+  EXPECT_EQ(contents(folder / "first.yaml"), contents(folder / "again.yaml"));
+}
+
 // Recorded sequences begin with a count per row, which is fast for a robot at rest. They are
 // smoothed so that they begin and end at rest, and need no ground force that is impossible there.
 TEST_F(Edit, ImportedSequencesBeginAndEndAtRest) {

@@ -127,6 +127,14 @@ void expect_walk_comes_back_without_its_root(const std::string& robot) {
   EXPECT_NE(read.out.find("the soles are not exactly level"), std::string::npos) << read.out;
   const Output check = ayumi(folder, {"check", "back.json"});
   EXPECT_EQ(check.exit_code, 0) << check.out;
+  // With the track of its root, only the times of the contacts have to be found.
+  ASSERT_EQ(ayumi(folder, {"export", "walk.json", "--format", "tracking-npz", "-o", "walk.npz"})
+                .exit_code,
+            0);
+  ASSERT_EQ(ayumi(folder, {"import", "walk.npz", "--robot", "robot", "-o", "whole.json"}).exit_code,
+            0);
+  const Output whole = ayumi(folder, {"check", "whole.json"});
+  EXPECT_EQ(whole.exit_code, 0) << whole.out;
 }
 
 TEST(Init, AWalkOfFiveJointLegsComesBackWithoutItsRoot) {

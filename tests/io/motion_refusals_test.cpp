@@ -7,6 +7,7 @@
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/formats/motion_formats.hpp"
+#include "ayumi/io/formats/npz_archive.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "tests/io/moving_motion.hpp"
 #include "tests/support/error_message.hpp"
@@ -335,6 +336,31 @@ TEST(MotionRefusals, Trajectories) {
         "          time_from_start: 1\n    bow:\n      joints: [l_knee]\n",
         "a motion with points needs joints"}},
       "m.yaml");
+}
+
+// In an earlier version, numbers that were saved as text, and positions without bodies, ended the
+// program by a memory error.
+TEST(MotionRefusals, ArraysWithoutNumbers) {
+  const size_t rows = 6, joints = static_cast<size_t>(hoap1().dof_count());
+  const std::string fps = npy_numbers({50}, {1}),
+                    angles = npy_numbers(std::vector<double>(rows * joints), {rows, joints}),
+                    words = npy_words(std::vector<std::string>(rows * joints, "0"), {rows, joints}),
+                    places = npy_numbers(std::vector<double>(rows * 3), {rows, 1, 3}),
+                    none = npy_numbers({}, {rows, 0, 3}),
+                    turns = npy_numbers(std::vector<double>(rows * 4, 0.5), {rows, 1, 4}),
+                    no_turns = npy_numbers({}, {rows, 0, 4});
+  const auto archive = [&](const std::string& joint_pos, const std::string& body_pos,
+                           const std::string& body_quat) {
+    return zip_of({{"fps.npy", fps},
+                   {"joint_pos.npy", joint_pos},
+                   {"body_pos_w.npy", body_pos},
+                   {"body_quat_w.npy", body_quat}});
+  };
+  expect_refused(
+      {{archive(words, places, turns), "joint_pos holds text; save it as numbers"},
+       {archive(angles, none, turns), "body_pos_w is empty; save the motion again"},
+       {archive(angles, places, no_turns), "body_quat_w is empty; save the motion again"}},
+      "m.npz");
 }
 
 TEST(MotionRefusals, FilesBesideAFileOfAngles) {

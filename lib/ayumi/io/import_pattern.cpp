@@ -76,6 +76,7 @@ ImportedPattern of_rows(const RobotModel& model, ImportedMotion imported,
   GroundedMotion motion = grounded(model, imported.motion, "motion.csv");
   ImportedPattern result;
   result.pattern = std::move(motion.pattern);
+  result.pattern.name = imported.name;
   result.format = imported.format;
   result.reason = imported.reason;
   result.rows = imported.rows;
@@ -108,7 +109,8 @@ ImportedPattern import_pattern(const std::string& bytes, const std::string& file
   ImportedPattern result =
       keys ? of_keys(std::move(*keys), options)
            : of_rows(model, read_motion(bytes, file, model, options.reading), options);
-  result.pattern.name = "imported from " + fs::path(file).filename().string();
+  if (result.pattern.name.empty())
+    result.pattern.name = "imported from " + fs::path(file).filename().string();
   result.pattern.file = "imported";  // names are relative to the working folder
   return result;
 }

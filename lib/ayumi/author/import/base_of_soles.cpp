@@ -39,11 +39,15 @@ constexpr double kInside = 0.002;
 // Price of a displacement of the ZMP where it needs none, compared with one outside. Chosen: small,
 // so that a hundredth of the distance outside is left.
 constexpr double kElsewhere = 0.01;
-// The whole range of the shift costs as much as a ZMP this far outside [m]. Chosen: the width of a
-// region that a check still calls inside.
+// A shift of its whole range costs as much as a ZMP this far outside [m]. Chosen: small against the
+// errors of H1's walk (25 mm), so that the shift is used where it is needed.
 constexpr double kWholeRange = 0.001;
-constexpr int kSteps = 30;   // of Newton's method. Chosen: it usually takes 5
-constexpr int kPrices = 10;  // tries with a higher price of the shift. Chosen: a factor of 4^10
+// Largest number of steps of Newton's method. Chosen: only rows at the edge of the support still
+// change then.
+constexpr int kSteps = 30;
+// Largest number of prices, each four times the one before, until the shift is within its range.
+// Chosen: the last price is a million times the first.
+constexpr int kPrices = 10;
 
 // The ZMP of the motion and how far a shift's acceleration moves it, row by row.
 struct ZmpRows {

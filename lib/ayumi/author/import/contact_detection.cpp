@@ -358,10 +358,12 @@ std::vector<Support> without_swing_ends(const RobotModel& model, const RawMotion
       const int middle = (run.first + run.last) / 2;
       int least = edge;
       while (least != middle && height(least + step) < height(least)) least += step;
-      if (least == middle) continue;  // sinks all the time: it takes up load
       const double place = height(least);
-      for (int k = edge; k != least && height(k) > place + kAtRest; k += step)
-        supports[k] = supports[outside];
+      int rest = edge;
+      while (rest != least && height(rest) > place + kAtRest) rest += step;
+      // A sole that sinks nearly all the time takes up load.
+      if (least == middle && 2 * std::abs(rest - edge) > std::abs(middle - edge)) continue;
+      for (int k = edge; k != rest; k += step) supports[k] = supports[outside];
     }
   }
   return supports;

@@ -829,6 +829,7 @@ void read_rows(const std::string& bytes, const std::string& file, const RobotMod
   result.motion.support =
       supports_on_ticks(read, static_cast<size_t>(result.motion.theta.rows()), result.motion.dt);
   result.rows = read.file_rows > 0 ? read.file_rows : static_cast<int>(read.rows());
+  result.name = read.name;
   result.commands = read.commands;
   result.caution = read.caution;
   result.sequence = read.sequence;

@@ -55,6 +55,10 @@ class ArrayReader {
                             (rows > 0 ? std::to_string(rows) : "rows") +
                             (dimensions > 2 ? " x bodies" : "") + " x " +
                             (width > 0 ? std::to_string(width) : "joints") + " is needed");
+    if (array.numbers.empty())
+      source_.refuse(0, name + (array.words.empty() ? " is empty; save the motion again"
+                                                    : " holds text; save it as numbers of the type "
+                                                      "float64"));
     for (size_t i = 0; i < array.numbers.size(); ++i)
       if (!std::isfinite(array.numbers[i]))
         source_.refuse(0, name + ": row " +

@@ -44,6 +44,7 @@ struct ImportedMotion {
   RawMotion motion;
   std::string format;     ///< name of motion_formats()
   std::string reason;     ///< reason why the content has this format; "" if the format was stated
+  std::string name = {};  ///< name of the motion; "" if the file has none
   int rows = 0;           ///< number of data rows of the file
   bool commands = false;  ///< motion.theta are servo targets
   TableCaution caution = {};  ///< caution of the run from which the table comes
