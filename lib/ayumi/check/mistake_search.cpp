@@ -62,6 +62,9 @@ constexpr double kGuessed = 1e3;
 // Largest number of trials of smaller hops if nothing else helps. Chosen: more than all 20 of them,
 // which count twice for legs of fewer than six joints.
 constexpr int kHopTrials = 60;
+// Largest number of trials of ways to keep bodies apart. Chosen: more than all 8 of them, which
+// count twice for legs of fewer than six joints, and more often for a long motion.
+constexpr int kRoomTrials = 60;
 // Number of hypotheses of one kind that are tried. Chosen: more than there usually are, except for
 // errors that last for the whole motion.
 constexpr size_t kTriedOfOneKind = 64;
@@ -512,6 +515,30 @@ std::optional<Candidate> smaller_hop(Trials trials, const RobotModel& model, con
   return best;
 }
 
+// If bodies meet and no sequence of changes is enough: the smallest change of each kind that keeps
+// them apart and leaves no error. A named mistake that is enough comes before, because then these
+// ways out are not tried.
+std::vector<Explanation> room_for_bodies(Trials trials, const RobotModel& model,
+                                         const Pattern& pattern, const TrialOutcome& found) {
+  std::vector<Explanation> ways;
+  if (found.meeting.empty()) return ways;
+  const Hypotheses hypotheses(model, pattern, found);  // the changes refer to it
+  const std::vector<Hypothesis> room = hypotheses.of(Hypotheses::Kind::room);
+  std::vector<Mend> mends;
+  for (const Hypothesis& one : room) mends.push_back(one.mend);
+  const std::vector<TrialOutcome> outcomes = trials.after(pattern, mends);
+  for (size_t i = 0; i < room.size(); ++i) {
+    const auto is_same = [&](const Explanation& e) { return e.written == room[i].says.written; };
+    if (!outcomes[i].good() || std::any_of(ways.begin(), ways.end(), is_same)) continue;
+    const TrialOutcome exact = trials.exact() ? outcomes[i] : trials.exactly(pattern, room[i].mend);
+    if (!exact.good()) continue;
+    ways.push_back(room[i].says);
+    ways.back().instead = before_result(ways.back().instead) + result_words(found, exact);
+    ways.back().enough = ways.back().is_way_out = true;
+  }
+  return ways;
+}
+
 }  // namespace
 
 Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
@@ -604,8 +631,15 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
       found = hop->outcome;
     }
   }
+  bool named = found.good();  // whether something is named that is enough
+  if (!named) {
+    const std::vector<Explanation> ways = room_for_bodies(
+        Trials(model, pattern, options, progress, kRoomTrials), model, pattern, given);
+    result.found.insert(result.found.end(), ways.begin(), ways.end());
+    named = !ways.empty();
+  }
   result.trials = trials.made();
-  result.complete = found.good() || !(trials.ended() || trials.left_out());
+  result.complete = named || !(trials.ended() || trials.left_out());
   return result;
 }
 
