@@ -23,9 +23,15 @@ void print_help(const CLI::App& app, const std::vector<std::string>& words) {
   std::string before = "ayumi";
   for (const std::string& word : words) {
     const std::vector<std::string> names = subcommand_names(*level);
-    if (std::find(names.begin(), names.end(), word) == names.end())
-      fail(ErrorCode::usage,
-           "help: " + before + " has no command '" + word + "'" + text::suggestion(word, names));
+    if (std::find(names.begin(), names.end(), word) == names.end()) {
+      std::string hint = text::suggestion(word, names);
+      for (const std::string& name : names) {
+        const std::vector<std::string> below = subcommand_names(*level->get_subcommand(name));
+        if (std::find(below.begin(), below.end(), word) != below.end())
+          hint = "; did you mean '" + name + " " + word + "'?";
+      }
+      fail(ErrorCode::usage, "help: " + before + " has no command '" + word + "'" + hint);
+    }
     level = level->get_subcommand(word);
     before += " " + word;
   }
