@@ -965,6 +965,19 @@ TEST(PlantedMistakes, RoomForBodiesThatMeetIsNamed) {
   EXPECT_TRUE(is_possible(nearer)) << found;
 }
 
+// A foot key is too far out, and without this mistake bodies meet: both changes are named.
+TEST(PlantedMistakes, RoomIsNamedTogetherWithAMistake) {
+  const RobotModel robot = narrow(0.035);
+  const Pattern kick = right_kick(
+      0.24, {{2.0, Foothold{{-0.02, -0.039, 0.02}}}, {2.4, Foothold{{0.5, -0.039, 0.02}}}});
+  const std::string found = texts_of(likely_mistakes(robot, kick, options_of(kick)));
+  EXPECT_NE(found.find("/keyframes/4: the right foot's x is 0.5 m"), std::string::npos) << found;
+  EXPECT_NE(found.find("bodies meet"), std::string::npos) << found;
+  EXPECT_NE(found.find("the pattern is consistent (together with the change named first for "),
+            std::string::npos)
+      << found;
+}
+
 // Ways to make room come only after mistakes: a wrong value that is enough is named alone.
 TEST(PlantedMistakes, RoomDoesNotDisplaceAWrongValue) {
   const RobotModel robot = narrow(0.02);

@@ -629,12 +629,22 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
     if (hop) {
       result.found = {hop->hypothesis.says};
       found = hop->outcome;
+      changed.clear();  // they are not named any more
     }
   }
   bool named = found.good();  // whether something is named that is enough
   if (!named) {
-    const std::vector<Explanation> ways = room_for_bodies(
-        Trials(model, pattern, options, progress, kRoomTrials), model, pattern, given);
+    const auto room = [&](const Pattern& of, const TrialOutcome& outcome) {
+      return room_for_bodies(Trials(model, of, options, progress, kRoomTrials), model, of, outcome);
+    };
+    std::vector<Explanation> ways = room(pattern, given);
+    if (ways.empty() && !changed.empty()) {
+      ways = room(current, found);
+      for (Explanation& way : ways) {
+        way.round = static_cast<int>(changed.size());
+        way.instead += together_with(changed);
+      }
+    }
     result.found.insert(result.found.end(), ways.begin(), ways.end());
     named = !ways.empty();
   }
