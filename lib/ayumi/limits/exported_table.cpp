@@ -231,8 +231,8 @@ std::string table_position_infeasibility(const Finding& f, double) {
 
 std::string rest_infeasibility(const Finding& f, double) {
   const ShownUnit unit = shown_unit(f.unit, f.in_degrees);
-  return "the servo target of " + f.where + " has " + text::significant(f.worst * unit.scale, 3) + " " +
-         unit.name + " at an end of the motion, but `export` accepts at most " +
+  return "the servo target of " + f.where + " has " + text::significant(f.worst * unit.scale, 3) +
+         " " + unit.name + " at an end of the motion, but `export` accepts at most " +
          text::significant(f.limit * unit.scale, 3) + " " + unit.name;
 }
 
