@@ -456,8 +456,8 @@ Eigen::AlignedBox3d box_of(const RobotModel& model, int body) {
 // necks are nearer.
 constexpr double kMiddle = 0.02;
 
-// Distance of the gaze's handle from the head, in heights of the robot at rest. Chosen: the handle
-// is in the picture, and far enough for a hand to steer it.
+// Distance of the gaze's handle from the head, in heights of the head above the feet. Chosen: the
+// handle is in the picture, far enough for a hand to steer it, and ahead of a head that leans.
 constexpr double kGazeAhead = 0.4;
 
 }  // namespace
@@ -499,7 +499,9 @@ std::vector<AuthorHandle> handles_of(const RobotModel& robot) {
   handles.insert(handles.end(), limbs.begin(), limbs.end());
   if (const int head = head_body(robot); head >= 0) {
     const Vector3d& from = robot.bodies()[static_cast<size_t>(head)].inertia.com;
-    const double ahead = kGazeAhead * data.position[static_cast<size_t>(head)].z();
+    double lowest = data.position[static_cast<size_t>(head)].z();
+    for (const Vector3d& position : data.position) lowest = std::min(lowest, position.z());
+    const double ahead = kGazeAhead * (data.position[static_cast<size_t>(head)].z() - lowest);
     handles.push_back(
         {Kind::gaze, "gaze", "gaze", head, from + ahead * gaze_axis(robot, head), Side::left});
   }

@@ -53,9 +53,9 @@ constexpr int kTrunkRounds = 5;
 // robots were dragged far up and down, no target exceeded a limit.
 constexpr double kLimbRoom = 0.02;
 
-// Largest speed and acceleration of a minimum jerk curve over the distance 1 in the time 1.
-// Derived: 15/8 in the middle, and 10/sqrt(3) at 21 % and 79 % of the time.
-constexpr double kPeakSpeed = 1.875, kPeakAcceleration = 5.7735;
+// Largest acceleration of a minimum jerk curve over the distance 1 in the time 1. Derived:
+// 10/sqrt(3), at 21 % and 79 % of the time.
+constexpr double kPeakAcceleration = 5.7735;
 // Share of gravity with which the COG may accelerate where a drag changes its height. Chosen: half
 // of the weight stays on the ground.
 constexpr double kHeightShare = 0.5;
@@ -196,10 +196,8 @@ void set_joint(const AuthorMotion& motion, double time, int dof, double value, K
     }
     keys.set(t, {list, joint.name}, in_unit(motion, joint, angle));
   };
-  const double speed = motion.task.robot.limits(motion.task.profile).speed[dof];
-  const double change = std::abs(value - sample_near(motion.task.series, time).state.theta[dof]);
   hold_around(
-      motion, time, kPeakSpeed * change / speed,
+      motion, time, 0,
       [&](const Keyframe& frame) { return frame.posture || frame.joints.contains(joint.name); },
       [&](double t) { set(t, sample_near(motion.task.series, t).state.theta[dof]); });
   set(time, value);

@@ -18,6 +18,7 @@
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/io/pattern/pattern_table.hpp"
 #include "ayumi/io/run/results_json.hpp"
+#include "ayumi/motion/shown_name.hpp"
 #include "ayumi/plot/com_zmp_plot.hpp"
 #include "ayumi/task/foothold_collisions.hpp"
 #include "ayumi/task/payload_findings.hpp"
@@ -146,7 +147,7 @@ std::vector<std::string> plot_joints_against_limits(const Task& task,
   const ActuatorLimits& limits = task.robot.limits(report.profile);
   SimulationLog log = plan_log(task.robot, limits, task.series, task.series);
   LociOptions options;
-  options.title = task.pattern.name + ": joints against their limits (" + limits.name + ")";
+  options.title = shown_name(task.pattern) + ": joints against their limits (" + limits.name + ")";
   options.model = &task.robot;
   options.profile = report.profile;
   options.cog = options.zmp = options.fz = false;

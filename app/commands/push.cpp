@@ -13,6 +13,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
 #include "ayumi/control/controller.hpp"
+#include "ayumi/motion/shown_name.hpp"
 #include "ayumi/plot/push_map.hpp"
 #include "option_checks.hpp"
 #include "pattern_input.hpp"
@@ -224,8 +225,8 @@ void find_limits(Context& context, const PushCommand& options) {
   context.print(table(cases, push, input.series));
   if (!options.map.empty()) {
     write_push_map(
-        push_map(push_map_title(input.pattern.name, input.robot.name(), input.profile, push), cases,
-                 push, input.series),
+        push_map(push_map_title(shown_name(input.pattern), input.robot.name(), input.profile, push),
+                 cases, push, input.series),
         options.map);
     context.print("  drawn in " + options.map + "\n");
   }

@@ -19,6 +19,7 @@
 #include "ayumi/io/run/run_output.hpp"
 #include "ayumi/io/table/table.hpp"
 #include "ayumi/limits/table_safety.hpp"
+#include "ayumi/motion/shown_name.hpp"
 #include "ayumi/plot/com_zmp_plot.hpp"
 #include "ayumi/render/encoder.hpp"
 #include "ayumi/render/snapshots.hpp"
@@ -365,8 +366,8 @@ bool MainJob::run(const std::string& file) {
   if (options_.pictures) {
     read_back();
     const std::shared_ptr<const RobotLook> look = robot_look(input.robot);
-    draw(input.robot, look, input.pattern.name);
-    write_report(input.robot, look, input.pattern.name);
+    draw(input.robot, look, shown_name(input.pattern));
+    write_report(input.robot, look, shown_name(input.pattern));
   }
   write_run(output_->folder(), folder_);
   output_->deliver();

@@ -927,6 +927,123 @@ TEST(PlantedMistakes, AFootIsTurnedAboutBothAxes) {
   EXPECT_TRUE(is_consistent(kick, options_of(kick))) << texts_of(found);
 }
 
+// The robot with shoulders that are nearer to each other.
+RobotModel narrow(double by) {
+  RobotDescription description = small().description();
+  for (JointDescription& joint : description.joints)
+    if (joint.name.ends_with("_shoulder_pitch"))
+      joint.origin.translation().y() += joint.name.starts_with("l") ? -by : by;
+  return RobotModel(description);
+}
+
+// A forearm meets the thigh of a kick, although every value of the pattern is possible. Either the
+// arms or the legs can make room.
+TEST(PlantedMistakes, RoomForBodiesThatMeetIsNamed) {
+  const RobotModel robot = narrow(0.035);
+  const Pattern kick = right_kick(
+      0.24, {{2.0, Foothold{{-0.02, -0.039, 0.02}}}, {2.4, Foothold{{0.03, -0.039, 0.02}}}});
+  const CheckOptions options = options_of(kick);
+  const auto is_possible = [&](const Pattern& pattern) {
+    return check_consistency(robot, sample(robot, pattern), options).consistent;
+  };
+  EXPECT_FALSE(is_possible(kick));
+  const std::string found = texts_of(likely_mistakes(robot, kick, options));
+  std::smatch arms, zmp;
+  ASSERT_TRUE(std::regex_search(
+      found, arms,
+      std::regex("/keyframes/0: bodies meet while the arms are held as in the posture 'home'; with "
+                 "the arms farther outwards \\(\"joints\": \\{\"r_shoulder_roll\": (-[0-9.]+), "
+                 "\"l_shoulder_roll\": ([0-9.]+)\\} in this key\\), the pattern is consistent")))
+      << found;
+  Pattern outwards = kick;
+  outwards.keyframes[0].joints = {{"r_shoulder_roll", std::stod(arms[1]) * kDegree},
+                                  {"l_shoulder_roll", std::stod(arms[2]) * kDegree}};
+  EXPECT_TRUE(is_possible(outwards)) << found;
+  ASSERT_TRUE(std::regex_search(
+      found, zmp,
+      std::regex("/keyframes/1: bodies meet while the ZMP is in the middle of one sole; with the "
+                 "ZMP [0-9.]+ mm nearer to the other foot \\(\"zmp\": \\[([0-9.]+), "
+                 "([0-9.]+)\\] in /keyframes/1, \"zmp\": .* in /keyframes/6\\), the pattern is "
+                 "consistent")))
+      << found;
+  Pattern nearer = kick;
+  for (const size_t key : {1u, 6u})
+    nearer.keyframes[key].zmp =
+        ZmpKey{ZmpKey::Place::point, {std::stod(zmp[1]), std::stod(zmp[2])}};
+  EXPECT_TRUE(is_possible(nearer)) << found;
+}
+
+// A foot key is too far out, and without this mistake bodies meet: both changes are named.
+TEST(PlantedMistakes, RoomIsNamedTogetherWithAMistake) {
+  const RobotModel robot = narrow(0.035);
+  const Pattern kick = right_kick(
+      0.24, {{2.0, Foothold{{-0.02, -0.039, 0.02}}}, {2.4, Foothold{{0.5, -0.039, 0.02}}}});
+  const std::string found = texts_of(likely_mistakes(robot, kick, options_of(kick)));
+  EXPECT_NE(found.find("/keyframes/4: the right foot's x is 0.5 m"), std::string::npos) << found;
+  EXPECT_NE(found.find("bodies meet"), std::string::npos) << found;
+  EXPECT_NE(found.find("the pattern is consistent (together with the change named first for "),
+            std::string::npos)
+      << found;
+}
+
+// Ways to make room come only after mistakes: a wrong value that is enough is named alone.
+TEST(PlantedMistakes, RoomDoesNotDisplaceAWrongValue) {
+  const RobotModel robot = narrow(0.02);
+  Pattern kick = right_kick(
+      0.24, {{2.0, Foothold{{-0.02, -0.039, 0.02}}}, {2.4, Foothold{{0.03, -0.039, 0.02}}}});
+  const CheckOptions options = options_of(kick);
+  ASSERT_TRUE(check_consistency(robot, sample(robot, kick), options).consistent);
+  kick.keyframes[3].joints["r_shoulder_twist"] = -80 * kDegree;
+  ASSERT_FALSE(check_consistency(robot, sample(robot, kick), options).consistent);
+  const std::string found = texts_of(likely_mistakes(robot, kick, options));
+  EXPECT_NE(found.find("/keyframes/3: r_shoulder_twist"), std::string::npos) << found;
+  EXPECT_EQ(found.find("bodies meet"), std::string::npos) << found;
+}
+
+// Room is proposed only where it can help, and from the posture that the pattern has.
+TEST(PlantedMistakes, RoomIsThatOfTheBodiesThatMeet) {
+  const RobotModel& robot = small();
+  const auto body = [&](const std::string& joint) {
+    return robot.dofs()[static_cast<size_t>(robot.find_dof(joint))].body;
+  };
+  const auto room = [&](const Pattern& pattern, const std::string& a, const std::string& b) {
+    TrialOutcome outcome;
+    outcome.errors = outcome.findings = 1;
+    outcome.meeting = {{body(a), body(b)}};
+    std::string words;
+    for (const Hypothesis& h : Hypotheses(robot, pattern, outcome).of(Hypotheses::Kind::room))
+      words += h.says.place + ": " + h.says.written + "; " + h.says.instead + "\n";
+    return words;
+  };
+  Pattern kick = right_kick(0.24, {{2.0, Foothold{{0, -0.039, 0.02}}}});
+  EXPECT_NE(room(kick, "l_elbow", "l_hip_pitch").find("\"r_shoulder_roll\": -20"),
+            std::string::npos)
+      << room(kick, "l_elbow", "l_hip_pitch");
+  EXPECT_NE(room(kick, "l_elbow", "l_hip_pitch").find("nearer to the other foot"),
+            std::string::npos);
+  // Two feet that meet need no arms.
+  EXPECT_EQ(room(kick, "l_ankle_roll", "r_ankle_roll").find("arms"), std::string::npos);
+  EXPECT_EQ(room(kick, "l_elbow", "r_elbow").find("ZMP"), std::string::npos);
+  kick.postures["wide"] = {{"r_shoulder_roll", -15 * kDegree}, {"l_shoulder_roll", 15 * kDegree}};
+  kick.default_posture = "wide";
+  EXPECT_NE(room(kick, "l_elbow", "l_hip_pitch")
+                .find("posture 'wide'; with the arms farther outwards (\"joints\": "
+                      "{\"r_shoulder_roll\": -25, \"l_shoulder_roll\": 25}"),
+            std::string::npos)
+      << room(kick, "l_elbow", "l_hip_pitch");
+  // A foot in the air has no ZMP key that could move.
+  kick.keyframes[3].zmp = ZmpKey{ZmpKey::Place::right};
+  EXPECT_EQ(room(kick, "l_ankle_roll", "r_ankle_roll").find("/keyframes/3"), std::string::npos);
+  kick.keyframes[4].joints["r_elbow"] = -0.5;
+  EXPECT_EQ(room(kick, "l_elbow", "l_hip_pitch").find("arms"), std::string::npos);
+  // Of many keys, few are listed.
+  WalkParameters steps = walk_defaults(robot);
+  steps.steps = 9;
+  const std::string walk = room(walk_pattern(robot, steps), "l_knee", "r_knee");
+  EXPECT_NE(walk.find(", and the same distance in "), std::string::npos) << walk;
+  EXPECT_LT(walk.find('\n'), 400u) << walk;
+}
+
 // Two keys are too far out, so that no single one of them is enough.
 TEST(PlantedMistakes, AllKeysOfASwingAreNamedTogether) {
   Pattern kick = right_kick(0.235, {{2.0, Foothold{{0, -0.12, 0.03}, {-30 * kDegree, 0, 0}}},
@@ -1072,6 +1189,34 @@ TEST(PlantedMistakes, AKeyThatHoldsTheHomePostureIsNotNamed) {
   const std::vector<Mistake> found = likely_mistakes(small(), raise, options_of(raise));
   ASSERT_FALSE(found.empty());
   for (const Mistake& mistake : found) EXPECT_NE(mistake.place, "/keyframes/0") << mistake.text();
+}
+
+// The numbers of a pattern in radians are small. With all of them read as degrees, the robot hardly
+// moves, which is always consistent and never meant.
+TEST(PlantedMistakes, SmallNumbersInRadiansAreNoDegrees) {
+  Pattern bow;
+  bow.phases = {{.until = 4, .swing = {}}};
+  key_at(bow, 0.5).zmp = ZmpKey{ZmpKey::Place::center};
+  for (const double t : {1.0, 2.0, 3.0})
+    key_at(bow, t).torso = Eigen::Vector3d(0, t == 2 ? 1.4 : 0, 0);
+  const std::vector<Mistake> found = likely_mistakes(small(), bow, options_of(bow));
+  ASSERT_FALSE(found.empty());
+  EXPECT_EQ(found.front().place, "/keyframes/2") << found.front().text();
+}
+
+// A key of the trunk has the yaw 0 in the world, so after a turn it turns the trunk back.
+TEST(PlantedMistakes, ATrunkThatLooksBackAfterATurnIsNamed) {
+  Pattern pattern = quarter_turn();
+  const double end = pattern.phases.back().until;
+  pattern.phases.push_back({.until = end + 2, .swing = {}});
+  for (const double after : {0.0, 0.8, 1.6})
+    key_at(pattern, end + after).torso = Eigen::Vector3d(0, after == 0.8 ? 0.1 : 0, 0);
+  const std::vector<Mistake> found = likely_mistakes(tall(), pattern, options_of(pattern));
+  ASSERT_FALSE(found.empty());
+  const std::string first = found.front().text();
+  EXPECT_NE(first.find("the yaw 0 here"), std::string::npos) << first;
+  EXPECT_NE(first.find("\"yaw\": 90 deg"), std::string::npos) << first;
+  EXPECT_NE(first.find("the pattern is consistent"), std::string::npos) << first;
 }
 
 // The rounds of a block are one line in the file, whatever the value of its counter is.

@@ -654,6 +654,26 @@ TEST_F(AuthorServer, TheFirstKeyOfAJointKeepsTheMotionAround) {
     EXPECT_NEAR(angle(after, frame["time"]), rest, 1e-3) << frame["time"];
 }
 
+// A keyframe comes 20 ms after the drag. If it held the height, the COG would have to fall faster
+// than gravity.
+TEST_F(AuthorServer, TheFirstKeyOfTheHeightLeavesTimeForTheChange) {
+  const Server server(file);
+  const Json before = server.state();
+  const auto height = [&](const Json& state, double t) {
+    return cog_of(state, row_at(server, state, t))[2];
+  };
+  const double t = 2.2, rest = height(before, t);
+  const auto cog = cog_of(before, row_at(server, before, t));
+  const auto [status, answer] =
+      server.post("pose", {{"time", t}, {"drag", "cog"}, {"to", {cog[0], cog[1], rest - 0.01}}});
+  ASSERT_EQ(status, 200) << answer;
+  ASSERT_EQ(server.edit(answer["edits"]).first, 200);
+  const Json after = server.state();
+  ASSERT_TRUE(after["error"].is_null()) << after["error"];
+  EXPECT_NEAR(height(after, t), rest - 0.01, 2e-4);
+  for (const double held : {1.67, 2.671}) EXPECT_NEAR(height(after, held), rest, 2e-4) << held;
+}
+
 TEST_F(AuthorServer, WhatIsDraggedIsWhatThePatternThenIs) {
   const Server server(file);
   const Json state = server.state();

@@ -229,6 +229,15 @@ TEST_F(CheckRepair, JointsAreDrawnAgainstTheirLimits) {
   EXPECT_EQ(ayumi({"check", kWalk, kWalk, "--plot", "two.svg"}).exit_code, 2);
 }
 
+// A pattern without a name has the name of its file in titles.
+TEST_F(CheckRepair, APlotOfAPatternWithoutANameHasTheNameOfItsFile) {
+  write(folder / "nameless.json", R"({ "format": "ayumi.pattern/1", "robot": "hoap1",
+    "phases": [{ "until": 1, "support": "both" }], "keyframes": [{ "t": 0.5, "zmp": "center" }] })");
+  ASSERT_EQ(ayumi({"check", "nameless.json", "--plot", "joints.svg", "-q"}).exit_code, 0);
+  EXPECT_NE(contents(folder / "joints.svg").find("nameless: joints against their limits"),
+            std::string::npos);
+}
+
 // Every swing of this walk is too fast for the knees, and each of them has consequences.
 TEST_F(CheckRepair, OneEntryForEachCauseAndAllFindingsOnRequest) {
   ASSERT_EQ(ayumi({"edit", "retime", kWalk, "--scale", "0.5", "-o", "fast.json", "-q"}).exit_code,

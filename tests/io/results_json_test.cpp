@@ -134,5 +134,19 @@ TEST(ResultsJson, SafetyNamesEveryViolation) {
   EXPECT_EQ(json.at("violations").at(0).at("rows"), 3);
 }
 
+// A report has angles in degrees, and three digits.
+TEST(ResultsJson, ViolationsOfATableAreReadInTheUnitsOfTheReport) {
+  SafetyReport report;
+  report.violations = {{"position", "l_knee", 2, -2.481e-5, 0, "rad", 1},
+                       {"step", "l_knee", 1.234, 61, 57, "counts", 3}};
+  RunFolder run;
+  run.sections = {{"export", safety_json(report)}};
+  const RunResults results = read_results(run, "run.json");
+  ASSERT_TRUE(results.safety);
+  EXPECT_EQ(results.safety->violations,
+            (std::vector<std::string>{"position of l_knee at 2.000 s: -0.00142 deg, limit 0 deg",
+                                      "step of l_knee at 1.234 s: 61 counts, limit 57 counts"}));
+}
+
 }  // namespace
 }  // namespace ayumi

@@ -516,11 +516,15 @@ std::vector<Mistake> likely_mistakes(const RobotModel& model, const Pattern& pat
                                      const CheckOptions& options, const Progress& progress) {
   const Explanations search = find_explanations(model, pattern, options, progress);
   std::vector<Mistake> mistakes;
-  for (const Explanation& e : search.found)
-    mistakes.push_back({.place = e.place,
-                        .words = text::two_sentences(e.written, e.instead),
-                        .explains_all = e.enough,
-                        .round = e.round});
+  const auto add = [&](bool way_out) {
+    for (const Explanation& e : search.found)
+      if (e.is_way_out == way_out)
+        mistakes.push_back({.place = e.place,
+                            .words = text::two_sentences(e.written, e.instead),
+                            .explains_all = e.enough,
+                            .round = e.round});
+  };
+  add(false);
   const std::vector<Mistake> impossible = impossible_values(model, pattern);
   if (mistakes.empty()) mistakes = impossible;
   // If it is known why a value is impossible, the reason comes first, and then the value that is
@@ -530,6 +534,7 @@ std::vector<Mistake> likely_mistakes(const RobotModel& model, const Pattern& pat
       if (const Explanation& e = search.found.front();
           why.place == e.place && why.words.starts_with(e.written + ","))
         mistakes.front().words = text::two_sentences(why.words, e.instead);
+  add(true);
   if (search.complete) return mistakes;
   const std::string stopped =
       "the search stopped after " + std::to_string(search.trials) + " trial changes of the pattern";

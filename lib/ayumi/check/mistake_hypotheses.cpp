@@ -10,8 +10,10 @@
 #include "ayumi/check/hypotheses/exchange_hypotheses.hpp"
 #include "ayumi/check/hypotheses/foothold_hypotheses.hpp"
 #include "ayumi/check/hypotheses/part_hypotheses.hpp"
+#include "ayumi/check/hypotheses/room_hypotheses.hpp"
 #include "ayumi/check/hypotheses/swing_hypotheses.hpp"
 #include "ayumi/check/hypotheses/time_hypotheses.hpp"
+#include "ayumi/check/hypotheses/torso_hypotheses.hpp"
 #include "ayumi/check/hypotheses/unit_hypotheses.hpp"
 #include "ayumi/check/hypotheses/zmp_hypotheses.hpp"
 
@@ -96,17 +98,18 @@ std::vector<Hypothesis> Hypotheses::of(Kind kind) const {
       return found_by({hypotheses::zmp_keys}, *examined_);
     case Kind::times:
       return found_by(
-          {unequal_blocks, hypotheses::ground_heights, hypotheses::turns, hypotheses::level_feet,
-           hypotheses::stoops, hypotheses::missing_flight_keys, hypotheses::all_sides,
-           hypotheses::crossed_footholds, hypotheses::key_times, hypotheses::phase_times},
+          {unequal_blocks, hypotheses::ground_heights, hypotheses::turns,
+           hypotheses::trunk_headings, hypotheses::level_feet, hypotheses::stoops,
+           hypotheses::missing_flight_keys, hypotheses::all_sides, hypotheses::crossed_footholds,
+           hypotheses::key_times, hypotheses::phase_times},
           *examined_);
     case Kind::irregular:
       return found_by({unequal_blocks, hypotheses::ground_heights, hypotheses::phase_times,
                        hypotheses::foothold_exchanges, hypotheses::zmp_sides, hypotheses::zmp_keys,
-                       hypotheses::all_zmp_keys, hypotheses::turns, hypotheses::swings,
-                       hypotheses::double_supports, hypotheses::leg_keys, hypotheses::unlike_sides,
-                       hypotheses::interpolations, hypotheses::rests, hypotheses::level_feet,
-                       hypotheses::stoops},
+                       hypotheses::all_zmp_keys, hypotheses::turns, hypotheses::trunk_headings,
+                       hypotheses::swings, hypotheses::double_supports, hypotheses::leg_keys,
+                       hypotheses::unlike_sides, hypotheses::interpolations, hypotheses::rests,
+                       hypotheses::level_feet, hypotheses::stoops},
                       *examined_);
     case Kind::exchanges:
       return found_by({hypotheses::footholds, hypotheses::swapped_axes, hypotheses::zmp_sides,
@@ -127,6 +130,9 @@ std::vector<Hypothesis> Hypotheses::of(Kind kind) const {
     case Kind::hops:
       if (examined_->pattern.table || examined_->pattern.correction) return {};
       return found_by({hypotheses::smaller_hops}, *examined_);
+    case Kind::room:
+      if (examined_->pattern.table || examined_->pattern.correction) return {};
+      return found_by({hypotheses::arms_aside, hypotheses::lesser_shifts}, *examined_);
   }
   return {};
 }

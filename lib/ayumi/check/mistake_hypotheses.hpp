@@ -51,7 +51,9 @@ class Hypotheses {
     paces,
     small_swings,
     /// Smaller hops: several changes at once, for motors that are too weak.
-    hops
+    hops,
+    /// Ways to keep bodies apart that meet. No value is wrong.
+    room
   };
 
   /// The references must outlive the object.

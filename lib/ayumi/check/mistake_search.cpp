@@ -62,6 +62,9 @@ constexpr double kGuessed = 1e3;
 // Largest number of trials of smaller hops if nothing else helps. Chosen: more than all 20 of them,
 // which count twice for legs of fewer than six joints.
 constexpr int kHopTrials = 60;
+// Largest number of trials of ways to keep bodies apart. Chosen: more than all 8 of them, which
+// count twice for legs of fewer than six joints, and more often for a long motion.
+constexpr int kRoomTrials = 60;
 // Number of hypotheses of one kind that are tried. Chosen: more than there usually are, except for
 // errors that last for the whole motion.
 constexpr size_t kTriedOfOneKind = 64;
@@ -511,6 +514,30 @@ std::optional<Candidate> smaller_hop(Trials trials, const RobotModel& model, con
   return best;
 }
 
+// If bodies meet and no sequence of changes is enough: the smallest change of each kind that keeps
+// them apart and leaves no error. A named mistake that is enough comes before, because then these
+// ways out are not tried.
+std::vector<Explanation> room_for_bodies(Trials trials, const RobotModel& model,
+                                         const Pattern& pattern, const TrialOutcome& found) {
+  std::vector<Explanation> ways;
+  if (found.meeting.empty()) return ways;
+  const Hypotheses hypotheses(model, pattern, found);  // the changes refer to it
+  const std::vector<Hypothesis> room = hypotheses.of(Hypotheses::Kind::room);
+  std::vector<Mend> mends;
+  for (const Hypothesis& one : room) mends.push_back(one.mend);
+  const std::vector<TrialOutcome> outcomes = trials.after(pattern, mends);
+  for (size_t i = 0; i < room.size(); ++i) {
+    const auto is_same = [&](const Explanation& e) { return e.written == room[i].says.written; };
+    if (!outcomes[i].good() || std::any_of(ways.begin(), ways.end(), is_same)) continue;
+    const TrialOutcome exact = trials.exact() ? outcomes[i] : trials.exactly(pattern, room[i].mend);
+    if (!exact.good()) continue;
+    ways.push_back(room[i].says);
+    ways.back().instead = before_result(ways.back().instead) + result_words(found, exact);
+    ways.back().enough = ways.back().is_way_out = true;
+  }
+  return ways;
+}
+
 }  // namespace
 
 Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
@@ -602,10 +629,27 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
     if (hop) {
       result.found = {hop->hypothesis.says};
       found = hop->outcome;
+      changed.clear();  // they are not named any more
     }
   }
+  bool named = found.good();  // whether something is named that is enough
+  if (!named) {
+    const auto room = [&](const Pattern& of, const TrialOutcome& outcome) {
+      return room_for_bodies(Trials(model, of, options, progress, kRoomTrials), model, of, outcome);
+    };
+    std::vector<Explanation> ways = room(pattern, given);
+    if (ways.empty() && !changed.empty()) {
+      ways = room(current, found);
+      for (Explanation& way : ways) {
+        way.round = static_cast<int>(changed.size());
+        way.instead += together_with(changed);
+      }
+    }
+    result.found.insert(result.found.end(), ways.begin(), ways.end());
+    named = !ways.empty();
+  }
   result.trials = trials.made();
-  result.complete = found.good() || !(trials.ended() || trials.left_out());
+  result.complete = named || !(trials.ended() || trials.left_out());
   return result;
 }
 

@@ -24,6 +24,7 @@ struct Explanation {
   /// The changes of one round are alternatives. After the first round (0), one change of each
   /// earlier round is also needed.
   int round = 0;
+  bool is_way_out = false;  ///< whether no value is wrong; such explanations come last
 };
 
 /// Largest number of versions of the pattern that are sampled and checked in all rounds together.

@@ -108,6 +108,8 @@ TrialOutcome Trials::of(const Pattern& pattern, bool exact) const {
       ++outcome.findings;
       outcome.slight = outcome.slight && is_slight(model_, f);
       if (f.severity != Severity::error) continue;
+      if (const auto* pair = std::get_if<BodyPairPlace>(&f.place))
+        outcome.meeting.emplace_back(pair->a, pair->b);
       outcome.of_table = outcome.of_table && needs_servo_period(f.kind);
       if (outcome.errors++ < kFirstErrors) outcome.windows.push_back({f.begin, f.end});
     }

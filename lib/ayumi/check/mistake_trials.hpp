@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "ayumi/base/progress.hpp"
@@ -31,6 +32,9 @@ struct TrialOutcome {
   int findings = kUnsampled;  ///< number of errors and of the findings that follow from them
   /// Windows of the first errors that follow from no other one [s].
   std::vector<Window> windows = {};
+
+  /// Pairs of bodies that overlap in errors, as indices into RobotModel::bodies().
+  std::vector<std::pair<int, int>> meeting = {};
 
   /// Set by exactly() if it finds errors: a quick trial finds none of them, because they only show
   /// at the servo's own period.

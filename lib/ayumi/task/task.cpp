@@ -11,6 +11,7 @@
 #include "ayumi/control/viip_goals.hpp"
 #include "ayumi/limits/limit.hpp"
 #include "ayumi/motion/pattern_context.hpp"
+#include "ayumi/motion/shown_name.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "ayumi/sim/run_caution.hpp"
 #include "ayumi/task/payload_findings.hpp"
@@ -168,7 +169,7 @@ Provenance provenance(const Task& task, const std::string& controller,
                       const std::string& command_line) {
   return {.robot = task.robot_name,
           .robot_sha256 = task.robot.description().sha256,
-          .pattern = task.pattern.name,
+          .pattern = shown_name(task.pattern),
           .pattern_sha256 = task.pattern.sha256,
           .profile = task.profile,
           .controller = controller,

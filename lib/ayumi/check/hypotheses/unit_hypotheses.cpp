@@ -113,8 +113,11 @@ void angle_units(const ExaminedPattern& of, std::vector<Hypothesis>& made) {
     for (const WrittenNumber& number : value.numbers)
       if (value.quantity == Quantity::angle) most = std::max(most, std::abs(number.value));
   constexpr double degree = std::numbers::pi / 180;
+  // If angles in degrees were declared as radians, the largest number is at least this. Chosen:
+  // nobody writes a motion whose angles are all below 2 degrees, and 2 rad is a large angle.
+  constexpr double kLeastDegrees = 2;
   const bool small = most <= 2 * std::numbers::pi * degree;
-  if (most == 0 || (of.pattern.degrees && !small)) return;
+  if (of.pattern.degrees ? most == 0 || !small : most < kLeastDegrees) return;
   const std::string meant = of.pattern.degrees ? "rad" : "deg",
                     unit = of.pattern.degrees ? "deg" : "rad";
   made.push_back({Rank::unit,

@@ -1,10 +1,12 @@
 #include "ayumi/io/run/run_results.hpp"
 
+#include <Eigen/Core>
 #include <limits>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/largest_number.hpp"
+#include "ayumi/base/significant.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/consistency.hpp"
 #include "ayumi/io/json/json_reader.hpp"
@@ -118,13 +120,19 @@ ExportNote export_of(const JsonNode& node) {
   note.safe = node.at("safe").boolean();
   note.max_step_ratio = read_figure(node.at("max_step_ratio"));
   note.worst_joint = node.at("worst_joint").string();
-  for (const JsonNode& violation : node.at("violations").items())
+  for (const JsonNode& violation : node.at("violations").items()) {
+    // The report has angles in degrees.
+    const std::string unit = violation.at("unit").string();
+    const bool angle = unit.starts_with("rad");
+    const auto quantity = [&](const char* key) {
+      return text::significant(read_figure(violation.at(key)) * (angle ? 180 / EIGEN_PI : 1), 3) +
+             " " + (angle ? "deg" + unit.substr(3) : unit);
+    };
     note.violations.push_back(violation.at("kind").string() + " of " +
                               violation.at("joint").string() + " at " +
                               text::fixed(violation.at("at_s").number(), 3) +
-                              " s: " + text::brief(read_figure(violation.at("value"))) + " " +
-                              violation.at("unit").string() + ", limit " +
-                              text::brief(read_figure(violation.at("limit"))));
+                              " s: " + quantity("value") + ", limit " + quantity("limit"));
+  }
   return note;
 }
 
