@@ -427,14 +427,13 @@ TEST(RecordedReplay, ARecordedWalkOfARealRobot) {
       EXPECT_EQ(note.get<std::string>().find("sensors: the load cells of the "), 0u) << note;
     EXPECT_GT(json.at("loads").at(2).at("correlation"), 0.96) << plant;
     EXPECT_GE(json.at("landings").size(), 12u) << plant;
-    // The zero of the right hip roll was found from these landings, in Ayumi's plant.
-    int left = 0;
-    for (const Json& landing : json.at("landings")) {
-      const double error =
-          landing.at("simulated_s").get<double>() - landing.at("measured_s").get<double>();
-      if (landing.at("foot") == "left" && std::abs(error) < 0.015) ++left;
-    }
-    EXPECT_GE(left, 5) << plant;
+    // The zeros of recorded.json were found from the first half of these landings, in Ayumi's
+    // plant.
+    int near = 0;
+    for (const Json& landing : json.at("landings"))
+      near += std::abs(landing.at("simulated_s").get<double>() -
+                       landing.at("measured_s").get<double>()) < 0.015 + 1e-9;
+    EXPECT_GE(near, plant == "ayumi" ? 10 : 5) << plant;
   }
 }
 
