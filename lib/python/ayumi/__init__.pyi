@@ -267,8 +267,8 @@ class IdentifiedJoint:
         """Mean distance of the unloaded joint from its command [rad]."""
 
     @property
-    def lag(self) -> float:
-        """Time by which the angle is behind a slow command [s]."""
+    def lag(self) -> ServoEstimate:
+        """Time by which the angle is behind a slow command [s]: a value with its interval."""
 
     @property
     def mean_error(self) -> float:
