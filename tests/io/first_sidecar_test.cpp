@@ -456,7 +456,7 @@ TEST(FirstSidecar, TheTrunkCarriesBothLegs) {
   const FirstSidecar chest =
       first_sidecar(folder.write("chest.urdf", text).string(), folder.path());
   EXPECT_NE(chest.text.find("\"trunk_link\": \"trunk\""), std::string::npos) << chest.text;
-  EXPECT_TRUE(says(chest.text, "Guess: the link that carries both legs"));
+  EXPECT_TRUE(says(chest.text, "Guess: this is the link that carries both legs"));
 }
 
 // Inertias of 1 kg m^2 and impossible inertias are replaced by those of boxes; the others stay.
@@ -513,9 +513,9 @@ TEST(FirstSidecar, SaysWhatTheFileDoesNotState) {
   for (const char* const part :
        {"\"package_path\": [\"../packages\"]", "\"control\": { \"dtad\": { \"K_P\": 2.5 } }",
         "\"l_hip_yaw\": \"one_hip_yaw\"", "\"r_knee\": \"two_knee\"",
-        "Placeholder: the URDF states effort limits of 1000 N m for 14 joints",
-        "State the true limits in \"position_limits_deg\"."})
+        "Placeholder: the URDF states effort limits of 1000 N m for 14 joints"})
     EXPECT_NE(first.text.find(part), std::string::npos) << part << "\n" << first.text;
+  EXPECT_TRUE(says(first.text, "State the true limits in \"position_limits_deg\"."));
   folder.write("robot/robot.json", first.text);
   const RobotDescription read =
       load_robot_description((folder.path() / "robot").string(), {}, {.guess = false});

@@ -373,7 +373,7 @@ TEST(MotionFormats, JointsAreMappedByNameAndByOrderOnlyOnRequest) {
   EXPECT_EQ(fewer.find("--order"), std::string::npos) << fewer;
   ImportOptions options;
   options.by_order = true;
-  EXPECT_NE(refusal_of(rows, "m.csv", options).find("give --rate HZ"), std::string::npos);
+  EXPECT_NE(refusal_of(rows, "m.csv", options).find("Give --rate HZ"), std::string::npos);
   options.rate = 30;
   const ImportedMotion read = read_motion_rows(rows, "m.csv", hoap1(), options);
   EXPECT_EQ(read.motion.dt, 1.0 / 30);

@@ -107,7 +107,7 @@ TEST(RobotVariants, MisspeltElementsAreCounted) {
        at = biped.find("<inertial>", at + 1))
     ++links;
   EXPECT_NE(error("inertial>", "intertial>")
-                .find("<intertial> is not an element of a link; did you mean <inertial>? (" +
+                .find("<intertial> is not an element of a link; did you mean <inertial>? (in " +
                       std::to_string(links) + " links)"),
             std::string::npos);
   EXPECT_NE(error("<limit ", "<limits ").find("did you mean <limit>?"), std::string::npos);

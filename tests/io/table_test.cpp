@@ -206,7 +206,7 @@ TEST(Table, BrokenTablesGetOneClearMessage) {
            {"t[s],base.x[m],base.y[m],base.z[m],base.qw,base.qx,base.qy,base.qz\n0,0,0,0,1,1,0,0\n",
             "row 1: base.qw...qz has length 1.414"},
            {std::string("\x89PNG\r\n\x1a\n\0\0\0", 11), "is a binary file"},
-           {head + "0,1\n1e9,1\n", "the rows are 1e+09 s apart"},
+           {head + "0,1\n1e9,1\n", "the time between two rows is 1e+09 s, but it must be from 1e-07 to 10 s"},
            {head + long_rows, "the table lasts 4000 s, but Ayumi reads at most 3600 s"},
            {"{\"columns\": [\"t[s]\"]}", "the key 'data' is missing"},
            {"{\"columns\": [\"t[s]\"], \"data\": []}", "/data: the table has no data row"},

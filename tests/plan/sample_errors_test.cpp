@@ -173,7 +173,7 @@ TEST(SampleErrors, FootKeysThatDragASupportingFoot) {
                            [](const Keyframe& a, const Keyframe& b) { return a.t < b.t; });
                }),
                {"phases/0", "right foot stands at [0, -0.05, 0] m until ", " mm away",
-                "Give the foot a key at ", " s where it stands"});
+                "Give the foot a key at ", " s at the place where it stands"});
 }
 
 // The message for a walk with a table of one arm, with 10 ms between its rows.
