@@ -138,7 +138,7 @@ TEST(ResultsJson, SafetyNamesEveryViolation) {
 TEST(ResultsJson, ViolationsOfATableAreReadInTheUnitsOfTheReport) {
   SafetyReport report;
   report.violations = {{"position", "l_knee", 2, -2.481e-5, 0, "rad", 1},
-                       {"step", "l_knee", 1.234, 61, 57, "counts", 3}};
+                       {TableLimit::step, "l_knee", 1.234, 61, 57, "counts", 3}};
   RunFolder run;
   run.sections = {{"export", safety_json(report)}};
   const RunResults results = read_results(run, "run.json");
