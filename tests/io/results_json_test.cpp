@@ -137,7 +137,7 @@ TEST(ResultsJson, SafetyNamesEveryViolation) {
 // A report has angles in degrees, and three digits.
 TEST(ResultsJson, ViolationsOfATableAreReadInTheUnitsOfTheReport) {
   SafetyReport report;
-  report.violations = {{"position", "l_knee", 2, -2.481e-5, 0, "rad", 1},
+  report.violations = {{TableLimit::position, "l_knee", 2, -2.481e-5, 0, "rad", 1},
                        {TableLimit::step, "l_knee", 1.234, 61, 57, "counts", 3}};
   RunFolder run;
   run.sections = {{"export", safety_json(report)}};
