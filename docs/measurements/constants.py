@@ -793,9 +793,11 @@ def write_page(results, found, commit, whole=True):
     if whole:
         note = f"Commit {commit}, {datetime.date.today()}: `docs/measurements/constants.py`"
     else:
+        later = re.findall(r"\w+ on \d{4}-\d\d-\d\d", table.split("Rows with an asterisk")[-1])
+        later += [one for one in [f"{commit} on {datetime.date.today()}"] if one not in later]
         note = (re.search(r"^Commit .*?constants.py`", table, re.M)[0] + ". Rows with an asterisk were"
-                f" measured later, at commit {commit} on {datetime.date.today()}, with the names of"
-                " these constants as arguments.")
+                " measured later, with the names of the constants as arguments, at one of these commits:"
+                f" {', '.join(later)}.")
     rooms = {}
     for name, value, why in found:
         if why:
