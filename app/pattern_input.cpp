@@ -28,10 +28,11 @@ void add_pattern_options(Command& command, PatternOptions& options) {
 void add_push_times(Command& command, std::vector<double>& times) {
   command
       .add_option("--times", times,
-                  "Times of the pushes [s] (default: chosen from the pattern). By default, a walk "
-                  "is pushed once while the robot stands and four times during one step. Steps of "
-                  "VIIP are pushed three times during one step. A motion without steps is pushed "
-                  "once while the robot stands and once in the middle.")
+                  "Times of the pushes [s] (default: chosen from the pattern). Each push is a "
+                  "simulation of its own. A walk has five times by default: one while the robot "
+                  "stands, and four during one step. If VIIP plans the steps, there are three "
+                  "times, all during one step. A motion without steps has two times: one while the "
+                  "robot stands, and the middle of the motion.")
       ->type_name("T")
       ->delimiter(',');
 }

@@ -131,16 +131,17 @@ void add_diff(Command& app, Context& context) {
       ->type_name("F");
   command
       ->add_option("--weight", options.weights,
-                   "Weight of this joint in the weighted change that diff prints. repair has the "
-                   "same option (default: the weight in the pattern; 1 if the pattern has none).")
+                   "Weight of this joint in the weighted change that diff prints (default: the "
+                   "weight in A; 1 if A has none). repair has the same option.")
       ->type_name("JOINT=FACTOR")
       ->allow_extra_args(false);
   command
-      ->add_option("--safety", options.safety,
-                   "Factor on the cost of missing safety. B has this cost if its motion comes "
-                   "nearer to the limits than is safe. diff prints the cost if the cost is not "
-                   "negligible. repair has the same option "
-                   "(default: the factor in the pattern; 1 if the pattern has none).")
+      ->add_option(
+          "--safety", options.safety,
+          "Factor on the cost of missing safety (default: the factor in A; 1 if A has none). "
+          "repair has the same option. The cost says by how much the motion of B misses the safe "
+          "distances that a repair of A aims at, for example that of the ZMP from the edge of the "
+          "support. diff prints the cost if it is not negligible.")
       ->check(number_within(0.0, 1e6))
       ->type_name("FACTOR");
   add_pattern_options(*command, options.input);

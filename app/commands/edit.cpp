@@ -749,15 +749,16 @@ void add_edit(Command& app, Context& context) {
       ->type_name("S");
   retime_command.add_flag("--to-limits", options.to_limits,
                           "Find the smallest scale (the fastest motion) that passes the check.");
-  retime_command.add_flag(
-      "--local", options.local,
-      "With --to-limits: slow the motion down only at the times at which a limit requires this.");
+  retime_command.add_flag("--local", options.local,
+                          "With --to-limits: play each part of the motion as fast as the limits "
+                          "allow there, in place of one scale for the whole motion.");
   retime_command
-      .add_option("--margin", options.margin,
-                  "With --local: distance from the edge of the support that is enough for the ZMP "
-                  "[m]. A smaller value allows a faster motion. Without this option, the ZMP keeps "
-                  "the larger of two distances: an eighth of the sole's width, and 80 % of the "
-                  "distance in the motion that --to-limits finds without --local.")
+      .add_option(
+          "--margin", options.margin,
+          "With --local: largest distance that the ZMP must keep from the edge of the support [m]. "
+          "A smaller value allows a faster motion. Without this option, the ZMP keeps at each "
+          "place of the motion the larger of two distances: an eighth of the sole's width, and 80 "
+          "% of the distance at this place in the motion that --to-limits finds without --local.")
       ->check(number_within(LocalRetimeOptions::kMostMargin))
       ->type_name("M");
   retime_command.add_flag("--keep-pauses", options.keep_pauses,
@@ -765,7 +766,10 @@ void add_edit(Command& app, Context& context) {
   retime_command.callback([&context] { retime(context, options); });
   Command& loop_command =
       add_edit_of(*command, "loop", "repeat a motion that ends as it begins", options);
-  loop_command.add_option("--times", options.times, "How many times the motion is played.")
+  loop_command
+      .add_option(
+          "--times", options.times,
+          "How many times the motion is played. With --cycle: how many times the two steps come.")
       ->check(whole_number_within(1, 1000))
       ->type_name("N")
       ->capture_default_str();

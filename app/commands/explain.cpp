@@ -132,7 +132,9 @@ void add_explain(Command& app, Context& context) {
   command->footer(
       "Examples:\n  ayumi explain 18\n"
       "  ayumi explain 14 out/hoap1_walk@3.05\n"
-      "  ayumi explain 14 out/hoap1_walk@3.05 --log open_loop");
+      "  ayumi explain 14 out/hoap1_walk@3.05 --log open_loop\n"
+      "The paper is T. Sugihara and Y. Nakamura, Whole-body Cooperative COG Control through ZMP "
+      "Manipulation for Humanoid Robots.");
   auto options = std::make_shared<ExplainCommand>();
   command->add_option("EQ", options->equation, "Number of the equation, 1 to 29.")->required();
   command->add_option("RUN@t", options->run,

@@ -813,9 +813,10 @@ void add_export(Command& app, Context& context) {
                     "each motion. The picture shows the direction in which the joint has to move.");
   command
       ->add_option("--ramp", options->ramp,
-                   "Shortest duration of the ramp before the motion [s] (default: 2, or 0 if the "
-                   "pattern is an imported sequence whose motion is unchanged). On the ramp, the "
-                   "robot moves from its home posture to the first posture of the motion.")
+                   "Shortest duration of the ramp before the motion [s]; 0 = no ramp (default: 2, "
+                   "or 0 if the pattern is an imported sequence whose motion is unchanged). On the "
+                   "ramp, the robot moves from its home posture to the first posture of the "
+                   "motion. If a joint is too slow for this duration, the ramp takes longer.")
       ->check(number_within(SafetyOptions::kRest));
   command
       ->add_option("--hold", options->hold,
@@ -836,8 +837,8 @@ void add_export(Command& app, Context& context) {
       ->excludes(interval);
   command->add_option("--layout", options->layout,
                       "Name of the column layout for --format hoap, one of \"layouts\" in the "
-                      "sidecar (default: the first layout that states the interval from row to "
-                      "row; Ayumi cannot write other layouts).");
+                      "sidecar (default: the first layout whose rows begin with the time to the "
+                      "next row). Ayumi can write only layouts whose rows begin with this time.");
   Option* posture =
       command
           ->add_option("--posture", options->safety.from,
@@ -859,9 +860,9 @@ void add_export(Command& app, Context& context) {
                     "Export the table of the disturbed run. The head of the table then says that "
                     "the table contains the reactions to disturbances.");
   command->add_flag("--force-unsafe", options->force_unsafe,
-                    "Write the table even if it is unsafe, or if `export` refuses to write it, for "
-                    "example because the robot fell in the run. The head and the name of the table "
-                    "then state this, for example walk.UNSAFE.csv.");
+                    "Write the table even if it is unsafe, or if its run is not fit for a robot, "
+                    "for example because the robot fell in the run. The head and the name of the "
+                    "table then state this, for example walk.UNSAFE.csv.");
   command
       ->add_option(
           "--servo", options->servo,

@@ -333,9 +333,8 @@ void add_gaits(Command& app, Context& context) {
       "-16:16:5\n"
       "  ayumi gaits hoap1 -o out/gaits --forward 0,0.05 --sideways 0 --turn 0 --failure 0.01\n"
       "Each LIST is a list of values (0,0.05) or a range FROM:TO:COUNT. A cell of the library is "
-      "one combination of "
-      "values of the axes. Run the command again with the same options to continue. Exit code 1: a "
-      "cell has no walk.");
+      "one combination of the values of --forward, --sideways, --turn and --period. Run the "
+      "command again with the same options to continue. Exit code 1: a cell has no walk.");
   auto options = std::make_shared<GaitsCommand>();
   GaitOptions& gaits = options->options;
   command

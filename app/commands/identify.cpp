@@ -239,7 +239,7 @@ void add_identify(Command& app, Context& context) {
   command
       ->add_option("--rate", options.reading.rate,
                    "Rows per second of files without a time column [1/s] (default: 1000 for the "
-                   "command, and the rate of the command for the measured angles).")
+                   "command; for the measured angles, the rate of the command).")
       ->check(number_within(kRecordingRate))
       ->type_name("HZ");
   command

@@ -171,22 +171,22 @@ void add_import(Command& app, Context& context) {
       ->capture_default_str();
   command
       ->add_option("--contact-load", options.how.contact.load,
-                   "Vertical ground force below which no sole carries the robot, so that the robot "
-                   "is in the air [multiple of the weight].")
+                   "If the vertical ground force is less than this, Ayumi takes the robot to be in "
+                   "the air: no sole carries it [multiple of the weight].")
       ->check(number_within(ContactThresholds::kLoad))
       ->capture_default_str();
   command->add_flag("--commands", options.how.reading.commands,
-                    "The angles of the file are servo targets, as export writes them. Servo "
-                    "targets are ahead of the posture by a time, the lead. Ayumi removes the lead "
-                    "to get the joint angles. For reference tables (reference.csv of a run, and "
-                    "the csv and json tables of export), Ayumi always does this.");
+                    "The angles of the file are servo targets, such as export --servo lead writes. "
+                    "Servo targets are ahead of the posture by a time, the lead. Ayumi removes the "
+                    "lead to get the joint angles. For reference tables (reference.csv of a run, "
+                    "and the csv and json tables of export), Ayumi always does this.");
   command
       ->add_option("--measured-at", at,
                    "What the angles are. encoder: angles as the encoders count them, measured or "
                    "commanded. Ayumi adds to them the offsets that ROBOT states. joint: joint "
-                   "angles. The default is encoder with --commands and for files that a robot "
-                   "plays or records, such as HOAP sequences; otherwise it is joint. For a table "
-                   "that Ayumi wrote, the offsets in the head of the table are used.")
+                   "angles. Default: encoder if --commands is given, or if the file has a format "
+                   "that a robot plays or records, such as a HOAP sequence; otherwise joint. For a "
+                   "table that Ayumi wrote, the offsets in the head of the table are used.")
       ->check(one_of({"encoder", "joint"}));
   command
       ->add_option("--smooth", options.how.reading.smooth,

@@ -184,9 +184,10 @@ void init(const Context& context, const InitOptions& options) {
 }  // namespace
 
 void add_init(Command& app, Context& context) {
-  Command* command = app.add_subcommand("init",
-                                        "write the first sidecar of a robot, a picture and a to-do "
-                                        "list from its URDF, MJCF, SDF, body or ztk file");
+  Command* command = app.add_subcommand(
+      "init",
+      "write a first version of the sidecar of a robot, with a picture and a to-do list, from a "
+      "file of the robot (URDF, MJCF, SDF, Choreonoid body or mi-lib ztk)");
   command->footer(
       "Examples:\n  ayumi init somebody.urdf -o my_robots/somebody\n"
       "Then follow the to-do list, and make a motion:\n"

@@ -950,8 +950,8 @@ void add_kick(Command& command, NewOptions& options) {
   add_scaled(command, "--period", options.period, "Time of the swing [s]", KickParameters().period,
              "S");
   add_height(command, options.kick.cog_height,
-             "a quarter of --height below the height in the home posture, or a still lower height "
-             "if the legs are straight in the home posture");
+             "lower than in the home posture by a quarter of --height, or still lower if the legs "
+             "are straight in the home posture");
 }
 
 void add_turn(Command& command, NewOptions& options) {

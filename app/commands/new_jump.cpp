@@ -281,7 +281,7 @@ void add_new_jump(Command& parent, Context& context) {
       ->type_name("M");
   command
       ->add_option("--cog-height", options.cog_height,
-                   "COG height at lift-off and touchdown (ref z_G in the paper) [m]" +
+                   "COG height at lift-off and touchdown (the symbol ref z_G of the paper) [m]" +
                        scaled(JumpParameters().cog_height))
       ->type_name("M");
   command->add_option("--forward", options.forward, "Distance of each jump forward [m].")

@@ -312,8 +312,8 @@ void add_picture_options(Command& command, PreviewOptions& options) {
                    "Marks to leave out: cog, zmp, ref-zmp, support, forces, push, trails, heat, "
                    "scale, caption or all."},
         {"--show", &options.show,
-         "Marks to draw. The mark 'heat' colours a joint amber near a limit and red at the "
-         "limit."}})
+         "Marks to draw in addition to the usual marks, with the names of --hide. The mark 'heat' "
+         "colours a joint amber near a limit and red at the limit."}})
     command.add_option(name, *list, what)->delimiter(',')->allow_extra_args(false);
   command.add_option("--title", clip.title, "Text at the beginning of the caption.");
   command.add_flag("--draft", options.draft, "Draw faster, without antialiasing.");

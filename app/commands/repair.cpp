@@ -505,10 +505,9 @@ void add_repair(Command& app, Context& context) {
       ->required()
       ->type_name("F");
   command
-      ->add_option(
-          "--lock", options.locked,
-          "What must not change: a joint, foot:left, foot:right, keyframe:N (from 0), or a "
-          "time window BEGIN..END [s]. May be repeated.")
+      ->add_option("--lock", options.locked,
+                   "What must not change: a joint, foot:left, foot:right, keyframe:N (the first is "
+                   "0), or a time window BEGIN..END [s]. May be repeated.")
       ->type_name("WHAT")
       ->allow_extra_args(false);
   command

@@ -299,9 +299,9 @@ void add_replay(Command& app, Context& context) {
                    "Robot that plays the table (default: the robot that the table names).")
       ->type_name("ROBOT");
   command
-      ->add_option(
-          "--profile", options->profile,
-          "Actuator profile, which also sets the servos (default: the first profile of the robot).")
+      ->add_option("--profile", options->profile,
+                   "Actuator profile. The simulated servos have the constants of this profile "
+                   "(default: the first profile of the robot).")
       ->type_name("NAME");
   command
       ->add_option(

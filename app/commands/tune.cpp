@@ -122,9 +122,9 @@ void add_tune(Command& app, Context& context) {
       "  ayumi tune walk.json -o tuned.json\n"
       "  ayumi tune walk.json --tune ka,tau_z --level 1.0 --directions 8 --json\n"
       "The objective is the sum of two means, and a smaller objective is better. The first "
-      "mean\nis over the pushes. The value of a push is 10 if the robot falls. If the robot "
-      "stands, the\nvalue is omega / z times the integral of |DCM - commanded DCM|. The integral "
-      "begins at the\npush and ends 1.2 s after the end of the push. The second mean is the mean "
+      "mean\nis over the pushes. The value of a push is 10 if the robot falls. Otherwise, the\n"
+      "value is omega / z times the integral of |DCM - commanded DCM|. The integral begins at "
+      "the\npush and ends 1.2 s after the end of the push. The second mean is the mean "
       "over time of\n|ZMP - reference ZMP| / z for the pattern without a push. z is the COG "
       "height, and omega is\nthe square root of g / z. Gains that make the loop unstable are not "
       "tried.");
