@@ -234,7 +234,7 @@ size_t rows_for(const ConsistencyReport& report) {
 std::string where_more_is(const ConsistencyReport& report) {
   return "  this answer is shortened. `ayumi check --all` prints everything" +
          (report.findings.empty() ? std::string()
-                                  : ", with " + text::counted(report.findings.size(), "finding")) +
+                                  : " (" + text::counted(report.findings.size(), "finding") + ")") +
          "\n";
 }
 

@@ -112,7 +112,7 @@ TEST(Consequence, OfAFlightThatLeapsAreItsEdges) {
         ASSERT_EQ(e.all.size(), 1u) << e.printed;
         EXPECT_EQ(e.all[0].where, way.z() != 0 ? "z" : way.x() != 0 ? "x" : "y");
         EXPECT_TRUE(std::abs(e.all[0].at - from) < 0.0021 || std::abs(e.all[0].at - to) < 0.0021);
-        EXPECT_NE(e.all[0].hint.find("leaps by"), std::string::npos) << e.all[0].hint;
+        EXPECT_NE(e.all[0].hint.find("jumps by"), std::string::npos) << e.all[0].hint;
       }
     }
   }

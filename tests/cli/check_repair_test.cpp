@@ -330,8 +330,8 @@ TEST_F(ChecksOn80Columns, WhatIsShortenedIsPrintedWithAll) {
   ASSERT_EQ(ayumi({"new", "jump", "-o", "jump.json", "-q"}).exit_code, 0);
   const std::string brief = ayumi({"check", "jump.json", "-q"}).out;
   EXPECT_TRUE(std::regex_search(
-      brief, std::regex("  this answer is shortened. `ayumi check --all` prints everything, "
-                        "with \\d+ findings\n$")))
+      brief, std::regex("  this answer is shortened. `ayumi check --all` prints everything "
+                        "\\(\\d+ findings\\)\n$")))
       << brief;
   EXPECT_EQ(brief.find("where each track comes from"), std::string::npos) << brief;
   const std::string all = ayumi({"check", "jump.json", "-q", "--all"}).out;
@@ -621,7 +621,7 @@ TEST_F(CheckRepair, DiffTellsWhatMoved) {
   EXPECT_EQ(words.exit_code, 0) << words.err;
   EXPECT_NE(words.out.find("outside.json: inconsistent"), std::string::npos) << words.out;
   EXPECT_NE(words.out.find("good.json: consistent"), std::string::npos) << words.out;
-  EXPECT_NE(words.out.find(" deg at "), std::string::npos) << words.out;
+  EXPECT_NE(words.out.find(" deg (at "), std::string::npos) << words.out;
   const Json json = json_of(ayumi({"diff", "outside.json", "good.json", "--json"}).out);
   EXPECT_FALSE(json["same"]);
   EXPECT_GT(double(json["max"]["joint_rad"]), 0.01);

@@ -425,7 +425,7 @@ TEST_F(Export, AKeptSequenceThatWasChangedIsRefused) {
 TEST_F(Export, RatesAndClocks) {
   const Output two = ayumi({"p.json", "--format", "hoap", "-o", "two.csv", "--interval", "2"});
   ASSERT_EQ(two.exit_code, 0) << two.err << two.out;
-  EXPECT_NE(two.out.find("the pattern begins at 2 s of the table"), std::string::npos) << two.out;
+  EXPECT_NE(two.out.find("The pattern begins at 2 s of the table"), std::string::npos) << two.out;
   EXPECT_NE(two.out.find(" s of the pattern)"), std::string::npos) << two.out;
   const auto rows = lines("two.csv");
   EXPECT_EQ(rows.size(), 1000u + 1001 + 250);

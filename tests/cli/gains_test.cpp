@@ -82,7 +82,7 @@ TEST(GainsCommand, RefusesWithTheReason) {
     EXPECT_NE(made.err.find(why), std::string::npos) << made.err;
   };
   refused({"gains", "hoap1", "--poles", "1,-2"},
-          "a pole with the real part 1 is not possible: it must be below 0");
+          "a pole with the real part 1 is not possible: the real part must be below 0");
   refused({"gains", "hoap1", "--gain", "k=1", "--gain", "d=1"}, "need K > 1 and D > 0");
   refused({"gains", "hoap1", "--gain", "k=2", "--gain", "d=0"}, "need K > 1 and D > 0");
   refused({"gains", "hoap1", "--absorb", "0.95"}, "the loop is unstable with");

@@ -112,6 +112,8 @@ class Doctor {
         return plural ? "links" : "link";
       case Subject::joint:
         return plural ? "joints" : "joint";
+      case Subject::joint_pairs:
+        return "joints";
       case Subject::limits:
         return "limits";
       case Subject::posture:
@@ -353,7 +355,7 @@ class Doctor {
     const size_t conform = opposite.size(), against = same.size();
     if (conform == 0 || against == 0) return;
     const bool are_same_here = conform >= against;
-    warn(Subject::joint, are_same_here ? same : opposite,
+    warn(Subject::joint_pairs, are_same_here ? same : opposite,
          std::string(
              "one of the two encoder signs may be wrong. In a symmetric movement, the counts "
              "of the left and the right joint change in ") +

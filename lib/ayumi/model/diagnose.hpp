@@ -9,8 +9,9 @@
 namespace ayumi {
 
 struct ModelWarning {
-  /// What a warning concerns: links, joints, the actuator limits or the home posture.
-  enum class Subject { link, joint, limits, posture };
+  /// What a warning concerns: links, joints, pairs of a left and a right joint, the actuator limits
+  /// or the home posture.
+  enum class Subject { link, joint, joint_pairs, limits, posture };
   Subject subject = Subject::link;
   std::string where;    ///< links, joints or field, e.g. "link head", "links head, neck"
   std::string message;  ///< the suspicion and the remedy

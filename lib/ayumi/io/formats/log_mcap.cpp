@@ -410,7 +410,7 @@ McapLog log_mcap(const RobotModel& model, const std::vector<ColoredMesh>& surfac
                          OrderedJson({{"timestamp", json_time(nanoseconds(std::max(0.0, e.t)))},
                                       {"level", level_of(e)},
                                       {"message", e.text},
-                                      {"name", e.kind},
+                                      {"name", name_of(e.kind)},
                                       {"file", ""},
                                       {"line", 0}})
                              .dump(-1, ' ', false, OrderedJson::error_handler_t::replace));
