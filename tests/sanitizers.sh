@@ -28,8 +28,10 @@ run_tsan() {
   for room in "${rooms[@]}"; do targets+=("${room}_tests"); done
   cmake --preset tsan >/dev/null
   cmake --build build/tsan --parallel "$jobs" --target "${targets[@]}"
-  TSAN_OPTIONS=halt_on_error=1 ctest --test-dir build/tsan --output-on-failure \
-    --parallel "$jobs" -R "^($(IFS='|'; echo "${rooms[*]}"))\\."
+  # FailingMeshReader needs posix_spawn() to report that a program does not exist. Under this
+  # sanitizer, the child ends with the exit code 127 in place of this report.
+  TSAN_OPTIONS=halt_on_error=1 ctest --test-dir build/tsan --output-on-failure --timeout 3600 \
+    --parallel "$jobs" -R "^($(IFS='|'; echo "${rooms[*]}"))\\." -E '^io\.FailingMeshReader$'
 }
 
 run_valgrind() {
