@@ -196,7 +196,8 @@ std::vector<AnswerPart> check_parts(const ConsistencyReport& report, const Robot
   const auto place = [&](FindingKind kind) { return figure_place(report, kind); };
   const double margin = at(FindingKind::support_margin);
   parts.push_back({Worth::figure,
-                   {"  ZMP " + mm_text(std::abs(margin)) + (margin < 0 ? " outside" : " inside") +
+                   {std::string("  ZMP ") + (margin < 0 ? "up to " : "at least ") +
+                    mm_text(std::abs(margin)) + (margin < 0 ? " outside" : " inside") +
                     " the support" + place(FindingKind::support_margin) +
                     ". The full model differs from the command by at most " +
                     mm_text(at(FindingKind::cog_residual)) + " in COG, " +

@@ -214,15 +214,16 @@ std::string in_words(double scale, const ConsistencyReport& before, const ForceR
   const ForceRange force = force_range(after.series);
   const auto mm = [](double metres) { return text::fixed(1e3 * metres, 1); };
   const auto newtons = [](const ForceRange& f) {
-    return "from " + text::fixed(f.least, 1) + " to " + text::fixed(f.most, 1) + " N";
+    return text::fixed(f.least, 1) + " to " + text::fixed(f.most, 1) + " N";
   };
   std::string out = "  the motion takes " + text::brief(scale) + " times its original time\n";
   if (pace)
     out += pace->bounded ? "  a faster pace fails: " + pace->limited_by + "\n"
                          : "  even the fastest pace that was tried passes the check\n";
   return out + "  ZMP margin " + mm(before.summary[FindingKind::support_margin]) + " mm before, " +
-         mm(after.report.summary[FindingKind::support_margin]) + " mm after\n  f_z " +
-         newtons(force_before) + " before, " + newtons(force) + " after\n";
+         mm(after.report.summary[FindingKind::support_margin]) +
+         " mm after\n  range of f_z: " + newtons(force_before) + " before, " + newtons(force) +
+         " after\n";
 }
 
 Json in_json(double scale, const ConsistencyReport& before, const ForceRange& force_before,
@@ -420,7 +421,7 @@ Sampled repeated(Sampled power, int times, const Join& join) {
 }
 
 std::string kept_words(const Pattern& pattern, const std::string& reason) {
-  if (!pattern.table) return "  keys of all parts are kept\n";
+  if (!pattern.table) return "  the result keeps the keyframes of the joined motions\n";
   return reason.empty() ? "" : "  written as a table, because " + reason + "\n";
 }
 

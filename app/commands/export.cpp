@@ -480,8 +480,8 @@ std::vector<std::string> refusals(const ExportOptions& options, const Source& so
 
 std::string words_of(const TableServo& servo) {
   if (servo.content == "ideal")
-    return "the table contains joint angles, not servo targets (--servo ideal). It was judged by "
-           "the limits of profile " +
+    return "the table contains joint angles, not servo targets, as with --servo ideal. It was "
+           "judged by the limits of profile " +
            servo.profile;
   const bool one = servo.lag.find(' ') == std::string::npos;
   return "made for the servos of profile " + servo.profile +
@@ -537,8 +537,12 @@ std::string in_words(const ExportOptions& options, const Source& source, const S
   const TableServo& servo = safe.table.servo;
   if (!servo.content.empty()) text += "  " + words_of(servo) + "\n";
   text += words_on_zeros(options, safe.table);
-  text += "  ramp " + text::brief(report.ramp) + " s, hold " + text::brief(report.hold) +
-          " s. The pattern begins at " + text::brief(report.ramp) + " s of the table\n";
+  text += (report.ramp > 0 ? "  a ramp of " + text::brief(report.ramp) + " s before the motion, "
+                           : "  no ramp before the motion, ") +
+          std::string(report.hold > 0 ? "and the last posture is held for " +
+                                            text::brief(report.hold) + " s after it"
+                                      : "and the last posture is not held after it") +
+          ". The pattern begins at " + text::brief(report.ramp) + " s of the table\n";
   if (!report.worst_joint.empty())
     text += "  the largest step from row to row is that of " + report.worst_joint + " at " +
             on_both_clocks(report.worst_at, report.ramp, report.ramp + report.motion) + ": " +

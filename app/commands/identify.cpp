@@ -162,8 +162,8 @@ void identify_servos(const Context& context, const IdentifyCommand& options) {
     if (std::any_of(found.joints.begin(), found.joints.end(),
                     [](const IdentifiedJoint& joint) { return joint.delay_is_lag; }))
       words +=
-          "  if the delay and the damping of a joint cannot be distinguished, the whole delay is "
-          "written as damping: kd = kp times delay\n";
+          "  if the delay and the damping of a joint cannot be distinguished, the whole lag is "
+          "written as damping: kd = kp times lag\n";
   }
   context.print(words);
   context.print_json(Json{

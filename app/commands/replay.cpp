@@ -173,9 +173,9 @@ std::string in_degrees(double angle, int digits = 3) {
 
 std::string text_of(const Clamp& clamp) {
   return clamp.joint + " by up to " + in_degrees(clamp.change) + " at " + text::fixed(clamp.t, 3) +
-         " s (because of the limit of the " +
-         (clamp.kind == Clamp::Kind::range ? "counts of 16 bits" : name_of(clamp.kind)) + ", in " +
-         text::counted(clamp.rows, "servo period") + ")";
+         " s. They do so in " + text::counted(clamp.rows, "servo period") +
+         ", because of the limit of the " +
+         (clamp.kind == Clamp::Kind::range ? "counts of 16 bits" : name_of(clamp.kind));
 }
 
 Json json_of(const Clamp& clamp) {

@@ -320,7 +320,7 @@ def check_case(name, pattern, *words):
                   "findings": counts([f["severity"] + " " + f["kind"] for f in r["findings"]]),
                   "causes": counts([f["kind"] for f in r["findings"] if not f["follows_from"]])}
         for hint in r["findings"]:
-            slower = re.search(r"stretch this window to ([\d.]+) times its length", hint["hint"])
+            slower = re.search(r"stretch .* to ([\d.]+) times its length", hint["hint"])
             if slower:
                 result["slower by"] = float(slower[1])
         result.update({k: v for k, v in r["summary"].items() if not k.startswith("max_zmp_res")})

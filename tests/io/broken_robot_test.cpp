@@ -282,8 +282,8 @@ TEST(BrokenRobot, WrongSidecars) {
   EXPECT_EQ(message_of(folder, "robot.json"), "robot.json: the file is empty, but JSON is needed");
   folder.write("robot.json", "{ \"format\": \"ayumi.pattern/1\" }");
   EXPECT_EQ(message_of(folder, "robot.json"),
-            "robot.json: /format: this is a pattern, but a robot is needed here; `ayumi check "
-            "FILE` reads such a file");
+            "robot.json: /format: this file is a pattern, which `ayumi check FILE` reads; a robot "
+            "is needed here");
 }
 
 }  // namespace

@@ -222,11 +222,11 @@ TEST(DocumentFormat, SaysWhatTheFileIs) {
         ErrorCode::bad_file);
   };
   EXPECT_EQ(message("ayumi.postures/1", "ayumi.robot/1"),
-            "mine.json: /format: this is a library of postures, but a robot is needed here; `ayumi "
-            "posture list FILE` reads such a file");
+            "mine.json: /format: this file is a library of postures, which `ayumi posture list "
+            "FILE` reads; a robot is needed here");
   EXPECT_EQ(message("ayumi.robot/1", "ayumi.pattern/1"),
-            "mine.json: /format: this is a robot, but a pattern is needed here; `ayumi inspect "
-            "FILE` reads such a file");
+            "mine.json: /format: this file is a robot, which `ayumi inspect FILE` reads; a pattern "
+            "is needed here");
   EXPECT_EQ(message("ayumi.pattern/2", "ayumi.pattern/1"),
             "mine.json: /format: 'ayumi.pattern/2' cannot be read; this version of Ayumi reads "
             "'ayumi.pattern/1'");

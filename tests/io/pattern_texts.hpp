@@ -160,7 +160,7 @@ inline const std::vector<Broken>& mistakes() {
        "1"},
       {"keyframes", R"([{"t": 1, "zmp": "left"}, {"t": 1, "zmp": "left"}])",
        "/keyframes/1/t: this keyframe is at 1 s, but the keyframe before it is at 1 s"},
-      {"keyframes", R"([{"t": "nan"}])", "expected a number (or an expression"},
+      {"keyframes", R"([{"t": "nan"}])", "expected a number, found the string"},
       {"keyframes", R"([{"t": "1 s"}])", "/keyframes/0/t: expected a number"},
       {"keyframes", R"([{"t": null}])", "/keyframes/0/t: expected a number, found null"},
       {"keyframes", R"([{"t": true}])", "/keyframes/0/t: expected a number, found true"},

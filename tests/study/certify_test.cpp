@@ -196,8 +196,8 @@ TEST(UncertainTask, WritesEveryValueWithItsUnit) {
       {"what": "load_bias", "choice": [-0.25], "source": "t"},
       {"what": "sensor_latency", "choice": [0.003], "source": "t"}])");
   const std::string words = t.task.values_text(values_of(t.task, 0));
-  for (const char* const part :
-       {" x 1.1; ", " +0.004 m; ", "friction 0.7; ", " -0.25 N; ", " 0.003 s"})
+  for (const char* const part : {" times 1.1; ", "cog along y of l_foot +0.004 m; ",
+                                 "friction 0.7; ", " -0.25 N; ", " 0.003 s"})
     EXPECT_NE(words.find(part), std::string::npos) << part << ": " << words;
 }
 

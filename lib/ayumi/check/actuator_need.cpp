@@ -88,11 +88,12 @@ std::string flight_words(const RobotModel& model, const CommandSeries& series,
   const auto rise = [](double duration) {
     return text::brief(1e3 * kGravity * duration * duration / 8, 2) + " mm";
   };
-  return "with the postures of the legs at the lift-off and the landing, the speed of " +
-         least->where + " is enough for a flight of at most " + text::brief(possible, 2) +
-         " s (a rise of " + rise(possible) + "), but the planned flight lasts " +
-         text::brief(lasts, 3) + " s (a rise of " + rise(lasts) + "). This bound considers " +
-         least->where +
+  return "the speed limit of " + least->where + " allows a flight of at most " +
+         text::brief(possible, 2) + " s (a rise of " + rise(possible) +
+         "), because a longer flight needs faster legs at lift-off and landing. The planned flight "
+         "lasts " +
+         text::brief(lasts, 3) + " s (a rise of " + rise(lasts) +
+         "). This bound is for the planned postures of the legs, and considers " + least->where +
          " alone. With the other joints, the longest possible flight may be even shorter";
 }
 
@@ -134,8 +135,8 @@ ActuatorNeed actuator_need(const RobotModel& model, const std::vector<KeyedGoal>
         need_of(model, goal.motion, options, check_consistency(model, goal.motion, options));
     if (need.text.empty()) continue;
     need.text = goal.place + ": " + need.text +
-                ". The times of joints are counted from the beginning of the motion that Ayumi "
-                "planned for this goal";
+                ". The time beside a joint is counted from the beginning of the motion that Ayumi "
+                "planned for this goal, not from the beginning of the pattern";
     return need;
   }
   return {};

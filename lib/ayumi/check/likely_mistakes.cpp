@@ -264,11 +264,11 @@ class Suspicions {
     std::vector<Mistake> found;
     const auto look = [&](const std::string& place, double height) {
       if (height <= most && height >= kLowestCog * home) return;
-      std::string words = "the COG height is " + metres(height) + ", but the COG of " +
-                          model_.name() + " is " + metres(home) +
-                          " above the soles in the home posture. The COG height " +
-                          (height > most ? "can be at most " + metres(most)
-                                         : "should be at least " + metres(kLowestCog * home));
+      std::string words =
+          "the COG height is " + metres(height) + ", but the COG of " + model_.name() + " is " +
+          metres(home) + " above the soles in the home posture. " +
+          (height > most ? "With straight legs, the COG height is " + metres(most)
+                         : "The COG height should be at least " + metres(kLowestCog * home));
       for (const auto& [unit, factor] : {std::pair("mm", 1e-3), std::pair("cm", 1e-2)})
         if (height * factor <= most && height * factor >= kLowestCog * home)
           words += ". Heights are in metres, and " + text::brief(height) + " " + unit + " are " +

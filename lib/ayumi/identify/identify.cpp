@@ -345,8 +345,8 @@ class Advice {
       return;
     }
     if (type.delay_takes_damping)
-      say("the effects of delay and damping cannot be distinguished, so the delay contains both: "
-          "record quick steps or a chirp");
+      say("the effects of delay and damping cannot be distinguished, so only their sum is given, "
+          "the lag: record quick steps or a chirp");
     const bool kp = joint.kp.known;
     if (!kp && tied(Constant::compliance, Constant::dry))
       say("the effects of kp and friction cannot be distinguished: record a slow sweep");
@@ -354,7 +354,8 @@ class Advice {
       say("the effects of kp and offset cannot be distinguished: record a load that changes, such "
           "as a squat");
     else if (!kp)
-      say("the load changes too little to show kp: record a squat or a sway, or use --per type");
+      say("the load changes too little to show kp: record a squat or a sway, or find one set of "
+          "constants for all servos of this type (--per type)");
     if (kp && !joint.coulomb.known)
       say("Coulomb friction is not determined: record a slow sweep in which the joint reverses its "
           "direction");

@@ -33,7 +33,7 @@ inline std::string amount_text(const Finding& finding) {
   constexpr double kLarge = 9999.5;
   const auto quantity = [&](double value, int more_digits) -> std::string {
     if (finding.unit == "m") return text::fixed(1000 * value, 1 + more_digits) + " mm";
-    if (finding.unit == "1") return text::fixed(value, 2 + more_digits);
+    if (finding.unit == "1") return text::fixed(100 * value, more_digits) + " %";
     const double number = value * shown.scale;
     const int digits = std::abs(number) < kLarge ? 4 : 3;
     return text::significant(number, digits + more_digits) + " " + shown.name;

@@ -114,8 +114,8 @@ std::string angle_size(double radians, bool degrees, int digits) {
 std::string ratio_text(double ratio) { return text::fixed(std::ceil(100 * ratio - 1e-9) / 100, 2); }
 
 std::string slow_down_text(double factor) {
-  return "stretch this window to " + text::fixed(std::ceil(100 * factor) / 100, 2) +
-         " times its length";
+  return "stretch the window around the worst time to " +
+         text::fixed(std::ceil(100 * factor) / 100, 2) + " times its length";
 }
 
 std::string straighter_leg(const RobotModel& model, int dof) {

@@ -162,7 +162,7 @@ std::string in_mm(double metres);  ///< a length without its sign, such as "12.0
 /// An angle without its sign, such as "3.08 deg"; in rad, it has two more digits.
 std::string angle_size(double radians, bool degrees, int digits = 2);
 std::string ratio_text(double ratio);  ///< a ratio rounded up to 0.01, such as "1.04"
-/// Advice such as "stretch this window to 1.04 times its length".
+/// Advice such as "stretch the window around the worst time to 1.04 times its length".
 std::string slow_down_text(double factor);
 /// The example ", for example by straightening the leg" for joints whose load it reduces: the
 /// joints of a leg that turn about the lateral axis in the rest posture; empty for other joints.

@@ -43,7 +43,7 @@ struct SummaryFigure {
   const char* label = nullptr;  ///< label on the report's page
   const char* unit = "";        ///< unit that is shown after the value times `scale`
   double scale = 1;
-  const char* share_name = nullptr;  ///< name in "of the limits: position 93 %, ..."; may be null
+  const char* share_name = nullptr;  ///< name in "of the limits: speed 93 %, ..."; may be null
   bool least = false;                ///< whether the smallest value counts and not the largest
   int line = 0;  ///< position in JSON and on the page; scripts and readers know this order
 };

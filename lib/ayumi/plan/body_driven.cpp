@@ -385,7 +385,7 @@ void describe(const SampleJob& job, const CogPlan& plan, const Worst& worst,
                      " near the ends so that the motion starts and stops at rest";
   origin["cog_height"] =
       job.tracks.cog[2] ? "keys" : "constant above the ground, from the defaults";
-  if (!job.tracks.fz) origin["fz"] = "computed from the COG height, equation (16)";
+  if (!job.tracks.fz) origin["fz"] = "computed from the COG height, equation (16) of the paper";
   origin["torso"] = job.tracks.torso ? "keys" : "level, in the mean heading of both feet";
   if (flies(job)) {
     origin["cog_height"] += ", and parabolas in flight";

@@ -227,8 +227,8 @@ void solve_relaxed(RepairState& state) {
   const bool cut_short = solution.status == NlpStatus::iteration_limit;
   if (cut_short)
     state.cut_short_by = solution.out_of_work
-                             ? "largest amount of computation for a motion of this duration"
-                             : "largest number of iterations";
+                             ? "largest allowed amount of computation for a motion of this duration"
+                             : "largest allowed number of iterations";
   // If even the nearby motion with the smallest violation violates a limit, no nearby motion
   // passes. A search that was stopped early does not show this.
   if (solution.status != NlpStatus::failed)

@@ -79,7 +79,7 @@ double most_of(UncertainKind kind) {
   return std::numeric_limits<double>::infinity();
 }
 
-/// A value in words with its unit. A factor follows "x", and a value that can be negative has a
+/// A value in words with its unit. A factor follows "times", and a value that can be negative has a
 /// sign.
 std::string amount_words(UncertainKind kind, double value) {
   const auto with = [&](const std::string& unit, double scale = 1) {
@@ -95,7 +95,7 @@ std::string amount_words(UncertainKind kind, double value) {
     case UncertainKind::servo_kp:
     case UncertainKind::servo_kd:
     case UncertainKind::sensor_noise:
-      return "x " + text::brief(value, 4);
+      return "times " + text::brief(value, 4);
     case UncertainKind::friction:
     case UncertainKind::push_link:
       return text::brief(value, 4);
@@ -124,6 +124,15 @@ std::string amount_words(UncertainKind kind, double value) {
       return text::brief(value, 4) + " N s";
   }
   return text::brief(value, 4);
+}
+
+/// The name of a value, in which an axis is named as such: "slope about x", "cog along y of trunk".
+std::string name_text(const DrawnValue& value) {
+  if (value.push >= 0 || !info(value.quantity->kind).axis) return value.name;
+  const std::string kind = info(value.quantity->kind).name + " ";
+  if (!value.name.starts_with(kind)) return value.name;  // the user has named the quantity
+  const bool is_length = value.quantity->kind == UncertainKind::cog;
+  return kind + (is_length ? "along " : "about ") + value.name.substr(kind.size());
 }
 
 /// The time at which a run that does not fall ends [s].
@@ -518,7 +527,7 @@ std::string UncertainTask::value_text(size_t i, double drawn) const {
     if (value.quantity == &push.time && push.phases) words = phases_[number % phases_.size()].name;
     if (value.quantity == &push.size && push.bounds) words = text::brief(drawn, 4) + " B";
   }
-  return value.name + " " + words;
+  return name_text(value) + " " + words;
 }
 
 std::string UncertainTask::values_text(const std::vector<double>& drawn) const {

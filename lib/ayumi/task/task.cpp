@@ -226,7 +226,7 @@ std::vector<std::string> unfit_reasons(const Judgement& judgement, const Simulat
 
 std::string refusal_of_goals() {
   return "the pattern has VIIP goals, so its joint angles are known only after a simulation. Run "
-         "the pattern with `ayumi run`, and then export the RUN";
+         "the pattern with `ayumi run`, and then export the folder of this run";
 }
 
 std::string refusal_of_disturbances(const std::string& disturbances) {

@@ -31,8 +31,8 @@ void require_format(const JsonNode& root, const std::string& format) {
   const auto wanted = known_formats().find(format), is = known_formats().find(found);
   if (wanted == known_formats().end() || is == known_formats().end())
     node.complain("'" + found + "' cannot be read; this version of Ayumi reads '" + format + "'");
-  node.complain(std::string("this is ") + is->second.what + ", but " + wanted->second.what +
-                    " is needed here; `" + is->second.command + "` reads such a file",
+  node.complain(std::string("this file is ") + is->second.what + ", which `" + is->second.command +
+                    "` reads; " + wanted->second.what + " is needed here",
                 true);
 }
 

@@ -73,10 +73,9 @@ double plain_number(const JsonNode& node, PatternScope& scope) {
   if (!node.value().is_string()) return node.number();
   const std::string text = node.string();
   if (!is_expression(text))
-    node.complain(
-        "expected a number (or an expression such as \"${stride}*2\" or \"pi/6\"), "
-        "found the string \"" +
-        text + "\"");
+    node.complain("expected a number, found the string \"" + text +
+                  "\"; write a number without quotation marks. A string can only be an expression "
+                  "with a parameter, pi or a function, such as \"${stride}*2\" or \"pi/6\"");
   return evaluate_expression(text, scope.parameters, where(node), &scope.used);
 }
 
