@@ -75,7 +75,7 @@ AuthorResult check_job(const AuthorMotion& motion, const Progress& progress) {
   for (const std::string& reason : export_refusals(task, judgement))
     if (reason != judgement.reason())
       lines.push_back("`ayumi export` would refuse the table of this pattern: " + reason);
-  lines.push_back(counted_findings(judgement) + ", actuators " + task.profile);
+  lines.push_back(counted_findings(judgement) + ", profile " + task.profile);
   lines.push_back("Share of the limits: " + shares_of_limits(judgement.report, task.robot));
   for (const Mistake& mistake : mistakes)
     if (!mistake.is_cause) lines.push_back("Note: " + mistake.words);

@@ -201,7 +201,7 @@ Checked checked_one(const Context& context, const CheckCommand& options, const s
   std::vector<AnswerPart> parts = {
       {Worth::verdict,
        {file + ": " + painted_verdict(report) + ", " + text::fixed(input.series.duration(), 2) +
-        " s, actuators " + report.profile + "\n"}}};
+        " s, profile " + report.profile + "\n"}}};
   append(parts, mistake_parts(mistakes, report.consistent));
   append(parts, remark_parts(painted(Paint::caution, "scenario:") + " ", disturbed));
   if (!need.text.empty()) append(parts, need_parts(need, report.profile));

@@ -84,7 +84,7 @@ void tune(Context& context, TuneCommand& options) {
     t.phases.push_back({"t = " + text::fixed(at, 3) + " s", at, false});
   const TuneResult result = tune_gains(input.robot, input.series, t, context.progress());
   std::string out = options.pattern + ": pushes of " + text::brief(t.level) +
-                    " B (B = the capture bound), actuators " + input.profile + "\n";
+                    " B (B = the capture bound), profile " + input.profile + "\n";
   out +=
       line("before tuning", result.before) + line("after tuning", result.after) + "  \"gains\": {";
   bool first = true;

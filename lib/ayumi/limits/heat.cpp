@@ -83,9 +83,12 @@ const char* heat_unit(const JudgedMotion& motion, const Violation& v) {
 Advice heat_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const Violation& v = window.worst;
   const std::string unit = std::string(" ") + heat_unit(motion, v);
+  const double window_length =
+      motion.series.dt * std::clamp(thermal_samples(motion), 1, motion.count());
   return {
       motion.model.dofs()[v.item].name + " needs " + text::brief(v.value, 3) + unit +
-          " on average, but its motor can give only " + text::brief(v.limit, 3) + unit +
+          " on average (root mean square over " + text::brief(window_length, 3) +
+          " s), but its motor can give only " + text::brief(v.limit, 3) + unit +
           " without a time limit",
       "add a rest, or shorten the lever arm of the weight" + straighter_leg(motion.model, v.item),
       ""};

@@ -286,9 +286,9 @@ void CogSolver::correct() {
       in_blocks(job, kStage, grid.n + 1, kBlock,
                 [&](int first, int end) { solve_again(first, end); });
     const double worst = measure();
-    report(job.progress,
-           {kStage, static_cast<double>(pass) / kMostIterations,
-            "ZMP error " + millimetres(worst) + " after pass " + std::to_string(pass + 1)});
+    report(job.progress, {kStage, static_cast<double>(pass) / kMostIterations,
+                          "the ZMP still differs from the plan by " + millimetres(worst) +
+                              " after pass " + std::to_string(pass + 1)});
     worse = worst < best ? 0 : worse + 1;
     if (worse == 0) {
       best = worst;
