@@ -60,7 +60,7 @@ find_program(another_program false REQUIRED)
 file(COPY_FILE ${another_program} ${copy}/libexec/ayumi/ayumi-mesh-reader)
 execute_process(COMMAND ${copy}/bin/ayumi inspect hoap1 ERROR_VARIABLE output RESULT_VARIABLE code
                 OUTPUT_QUIET WORKING_DIRECTORY ${elsewhere})
-expect("${copy}/libexec/ayumi/ayumi-mesh-reader: the mesh reader ended before it was ready"
+expect("${copy}/libexec/ayumi/ayumi-mesh-reader: this program, which reads meshes, ended before it was ready"
        "a broken reader of meshes (exit code ${code})")
 
 run(bash -c [=[source "$0"

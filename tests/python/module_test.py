@@ -563,7 +563,7 @@ class InTheLoop(unittest.TestCase):
                 super().step(targets, input, dt)
                 return ayumi.StepReport(np.full(len(targets), np.nan), [], [])
 
-        with self.assertRaisesRegex(ayumi.Error, "reports a torque of nan; numbers below 1e6 .* "
+        with self.assertRaisesRegex(ayumi.Error, "reports a torque of nan. Numbers below 1e6 .* "
                                     "the step began 0.000 s after the plant's start"):
             ayumi.simulate(self.task, plant=lambda *about: WithoutTorques(*about, 0.0))
 
