@@ -26,14 +26,15 @@ inline ShownUnit shown_unit(const std::string& unit, bool degrees) {
 }
 
 /// The value and the limit, such as "300 deg, limit 1 deg", with as many digits as are needed to
-/// see the difference.
-inline std::string amount_text(const Finding& finding) {
-  const ShownUnit shown = shown_unit(finding.unit, finding.in_degrees);
+/// see the difference. Both numbers are in `unit`; angles are shown in degrees if `in_degrees`.
+inline std::string amount_text(double worst, double limit, const std::string& unit,
+                               bool in_degrees) {
+  const ShownUnit shown = shown_unit(unit, in_degrees);
   // From this value on, three digits are enough. Chosen: only accelerations are so large.
   constexpr double kLarge = 9999.5;
   const auto quantity = [&](double value, int more_digits) -> std::string {
-    if (finding.unit == "m") return text::fixed(1000 * value, 1 + more_digits) + " mm";
-    if (finding.unit == "1") return text::fixed(value, 2 + more_digits);
+    if (unit == "m") return text::fixed(1000 * value, 1 + more_digits) + " mm";
+    if (unit == "1") return text::fixed(value, 2 + more_digits);
     const double number = value * shown.scale;
     const int digits = std::abs(number) < kLarge ? 4 : 3;
     return text::significant(number, digits + more_digits) + " " + shown.name;
@@ -42,9 +43,12 @@ inline std::string amount_text(const Finding& finding) {
   // computation.
   constexpr int kMostMoreDigits = 6;
   int more = 0;
-  while (more < kMostMoreDigits && quantity(finding.worst, more) == quantity(finding.limit, more))
-    ++more;
-  return quantity(finding.worst, more) + ", limit " + quantity(finding.limit, more);
+  while (more < kMostMoreDigits && quantity(worst, more) == quantity(limit, more)) ++more;
+  return quantity(worst, more) + ", limit " + quantity(limit, more);
+}
+
+inline std::string amount_text(const Finding& finding) {
+  return amount_text(finding.worst, finding.limit, finding.unit, finding.in_degrees);
 }
 
 /// The kind and the place, such as "joint_speed of l_knee" or "friction of the left foot".
