@@ -11,9 +11,10 @@ namespace ayumi::text {
 /// As brief(), but a large number has no exponent, such as "114000" for 114213 with three digits.
 inline std::string significant(double value, int digits) {
   // brief() writes an exponent if the rounded value has more than `digits` digits before the point.
-  if (!(std::abs(value) >= std::pow(10, digits) - 0.5)) return brief(value, digits);
-  if (!std::isfinite(value)) return brief(value, digits);
-  const double unit = std::pow(10, std::floor(std::log10(std::abs(value))) + 1 - digits);
+  double least = 1, unit = 1;  // the least number with more digits, and the unit of the last digit
+  for (int i = 0; i < digits; ++i) least *= 10;
+  while (std::isfinite(value) && std::abs(value) >= (least - 0.5) * unit) unit *= 10;
+  if (unit == 1) return brief(value, digits);
   return fixed(std::round(value / unit) * unit, 0);
 }
 

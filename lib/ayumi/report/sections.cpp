@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "ayumi/base/counted.hpp"
+#include "ayumi/base/shown_amount.hpp"
 #include "ayumi/base/significant.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
 #include "ayumi/check/consistency.hpp"
 #include "ayumi/check/finding_groups.hpp"
-#include "ayumi/limits/amount_text.hpp"
 #include "ayumi/plot/compare_plot.hpp"
 #include "ayumi/plot/push_map.hpp"
 #include "ayumi/render/log_reading.hpp"

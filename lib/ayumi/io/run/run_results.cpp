@@ -6,11 +6,11 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/largest_number.hpp"
+#include "ayumi/base/shown_amount.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/consistency.hpp"
 #include "ayumi/io/json/json_reader.hpp"
 #include "ayumi/io/run/seal.hpp"
-#include "ayumi/limits/amount_text.hpp"
 
 namespace ayumi {
 namespace {
