@@ -340,7 +340,7 @@ void new_step(Context& context, NewOptions options) {
       {std::to_string(w.steps) + (w.steps == 1 ? " step " : " steps ") + where +
            ", and one more step that brings the feet together. Period " + text::brief(w.period) +
            " s, lift " + text::brief(w.lift) + " m",
-       "For a longer step, change \"to\" of the swings. The COG is solved from the ZMP keys."});
+       "For a longer step, change \"to\" of the swings. The COG is computed from the ZMP keys."});
 }
 
 void new_sway(Context& context, NewOptions options) {

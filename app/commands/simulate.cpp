@@ -43,19 +43,15 @@ StreamedRun simulate_pattern_once(const Context& context, const Task& input,
                            log_file(output), {.postures = output.has_value()});
 }
 
-/// The words of a case, with one row for each kind of values.
-std::string case_rows(const std::string& words) {
-  std::string rows = "  ";
-  for (size_t begin = 0, end = 0; end != std::string::npos; begin = end + 2) {
-    end = words.find("; ", begin);
-    rows += (begin == 0 ? "" : "    ") + words.substr(begin, end - begin) + "\n";
-  }
-  return rows;
-}
+struct SimulatedCase {
+  StreamedRun run;
+  std::string rows;  ///< the case in words, with one row for each kind of values
+};
 
 /// Simulates one case of `certify` with the robot, ground and pushes that it draws.
-StreamedRun simulate_case(const Context& context, const Task& input, const SimulateCommand& options,
-                          const std::optional<RunOutput>& output) {
+SimulatedCase simulate_case(const Context& context, const Task& input,
+                            const SimulateCommand& options,
+                            const std::optional<RunOutput>& output) {
   Study study = load_study(input, options.study);
   const bool stated = !options.study.empty() || !input.pattern.uncertainty.empty();
   context.print(fit_to_plant(study, options.choice.plant, stated));
@@ -67,11 +63,13 @@ StreamedRun simulate_case(const Context& context, const Task& input, const Simul
   const RobotUnit robot = task.unit(drawn);
   SimulateOptions simulate_options = task.options(numbers, drawn);
   simulate_options.unit = &robot;
-  const std::string values = drawn.empty() ? "" : ": " + task.values_text(drawn);
-  return simulate_streamed(context, input, simulate_options, log_file(output),
-                           {.postures = output.has_value(),
-                            .first_events = {{0, EventKind::study_case,
-                                              "case " + std::to_string(options.number) + values}}});
+  const std::vector<std::string> values = task.values_by_kind(drawn);
+  const std::string words = "case " + std::to_string(options.number) + (values.empty() ? "" : ": ");
+  return {.run = simulate_streamed(
+              context, input, simulate_options, log_file(output),
+              {.postures = output.has_value(),
+               .first_events = {{0, EventKind::study_case, words + text::join(values, "; ")}}}),
+          .rows = "  " + words + text::join(values, "\n    ") + "\n"};
 }
 
 RunFolder run_of(const Task& input, StreamedRun simulated) {
@@ -105,12 +103,13 @@ void simulate_pattern(Context& context, const SimulateCommand& options) {
   // The output is opened after the input has been read, so that bad input leaves no files.
   std::optional<RunOutput> output;
   if (!options.out.empty()) output.emplace(options.out, context.force);
-  StreamedRun simulated = options.number < 0
-                              ? simulate_pattern_once(context, input, options, output)
-                              : simulate_case(context, input, options, output);
+  SimulatedCase result =
+      options.number < 0 ? SimulatedCase{simulate_pattern_once(context, input, options, output), ""}
+                         : simulate_case(context, input, options, output);
+  StreamedRun& simulated = result.run;
   const WrittenLog& log = simulated.log;
   context.print(options.pattern + ": " + outcome_text(log) + "\n");
-  if (options.number >= 0) context.print(case_rows(log.about.events.front().text));
+  context.print(result.rows);
   nlohmann::ordered_json json = nlohmann::ordered_json::parse(simulation_json(log));
   json["realtime_factor"] = static_cast<double>(log.rows) * log.about.dt / simulated.wall;
   context.exit_code = log.about.result.outcome == Outcome::stands ? 0 : 1;

@@ -26,6 +26,8 @@ TEST(Text, LettersThatWereExchangedAreOneSlip) {
   EXPECT_EQ(text::suggestion("sni", {"pi", "sin", "cos"}), "; did you mean 'sin'?");
   EXPECT_EQ(text::suggestion("wlak", {"talk", "walk"}), "; did you mean 'walk'?");
   EXPECT_EQ(text::suggestion("x", {"walk"}), "");
+  EXPECT_EQ(text::suggestion("ed", {"new", "edit", "send"}), "; did you mean 'edit'?")
+      << "all have the distance 2";
   // A word of megabytes, in a broken file, must not be compared letter by letter.
   const std::vector<std::string> many(5000, std::string(50, 'x'));
   EXPECT_EQ(text::suggestion(std::string(5'000'000, 'x'), many), "");

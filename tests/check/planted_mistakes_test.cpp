@@ -988,6 +988,30 @@ TEST(PlantedMistakes, RoomIsNamedTogetherWithAMistake) {
       << found;
 }
 
+// The trials of ways out count as well, and the bound is that of all trials. A way out does not
+// hide that the search for mistakes was cut short.
+TEST(PlantedMistakes, TrialsOfRoomCount) {
+  const RobotModel robot = narrow(0.035);
+  const Pattern kick = right_kick(
+      0.24, {{2.0, Foothold{{-0.02, -0.039, 0.02}}}, {2.4, Foothold{{0.03, -0.039, 0.02}}}});
+  const auto ways_of = [](const Explanations& search) {
+    return std::count_if(search.found.begin(), search.found.end(),
+                         [](const Explanation& e) { return e.is_way_out; });
+  };
+  const Explanations whole = find_explanations(robot, kick, options_of(kick), {});
+  EXPECT_GT(ways_of(whole), 0);
+  EXPECT_LE(whole.trials, kMostTrials);
+  const Explanations none = find_explanations(robot, kick, options_of(kick), {}, 0);
+  EXPECT_EQ(none.trials, 0);
+  EXPECT_EQ(ways_of(none), 0);
+  EXPECT_FALSE(none.complete);
+  for (int most = 1; most < whole.trials; most += std::max(1, whole.trials / 5)) {
+    const Explanations part = find_explanations(robot, kick, options_of(kick), {}, most);
+    EXPECT_LE(part.trials, most);
+    EXPECT_FALSE(part.complete) << most;
+  }
+}
+
 // Ways to make room come only after mistakes: a wrong value that is enough is named alone.
 TEST(PlantedMistakes, RoomDoesNotDisplaceAWrongValue) {
   const RobotModel robot = narrow(0.02);

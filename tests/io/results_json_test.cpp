@@ -134,18 +134,23 @@ TEST(ResultsJson, SafetyNamesEveryViolation) {
   EXPECT_EQ(json.at("violations").at(0).at("rows"), 3);
 }
 
-// A report has angles in degrees, and three digits.
+// A report has angles in degrees, and as many digits as show that a limit is exceeded.
 TEST(ResultsJson, ViolationsOfATableAreReadInTheUnitsOfTheReport) {
   SafetyReport report;
   report.violations = {{TableLimit::position, "l_knee", 2, -2.481e-5, 0, "rad", 1},
-                       {TableLimit::step, "l_knee", 1.234, 61, 57, "counts", 3}};
+                       {TableLimit::step, "l_knee", 1.234, 61, 57, "counts", 3},
+                       {TableLimit::step, "r_knee", 1.5, 57.04, 57, "counts", 1},
+                       {TableLimit::step, "r_hip", 1.5, 57.0004, 57, "counts", 1}};
   RunFolder run;
   run.sections = {{"export", safety_json(report)}};
   const RunResults results = read_results(run, "run.json");
   ASSERT_TRUE(results.safety);
-  EXPECT_EQ(results.safety->violations,
-            (std::vector<std::string>{"position of l_knee at 2.000 s: -0.00142 deg, limit 0 deg",
-                                      "step of l_knee at 1.234 s: 61 counts, limit 57 counts"}));
+  EXPECT_EQ(
+      results.safety->violations,
+      (std::vector<std::string>{"position of l_knee at 2.000 s: -0.001422 deg, limit 0 deg",
+                                "step of l_knee at 1.234 s: 61 counts, limit 57 counts",
+                                "step of r_knee at 1.500 s: 57.04 counts, limit 57 counts",
+                                "step of r_hip at 1.500 s: 57.0004 counts, limit 57 counts"}));
 }
 
 }  // namespace

@@ -90,7 +90,7 @@ TEST(SweepFile, SaysWhatIsWrongAndWhere) {
   };
   const std::string pattern = R"("settings": {"pattern": "p.json"}, )";
   expect(R"("cases": {"seed": 1})", "the cases have no pattern");
-  expect(pattern + R"("cases": {"sed": 1})", "did you mean 'seed'?");
+  expect(pattern + R"("cases": {"sed": 1})", "worlds and disturbances); did you mean 'seed'?");
   expect(pattern + R"("cases": {"seed": []})", "/sweep/cases/seed: the list is empty");
   expect(pattern + R"("cases": {"seed": 1.5})", "expected a whole number of at least 0, found 1.5");
   expect(pattern + R"("cases": {"seed": -1})", "-1");

@@ -47,6 +47,28 @@ bool has(const Drawing& drawing, const std::string& wanted) {
   return std::find(all.begin(), all.end(), wanted) != all.end();
 }
 
+/// The largest number of the axis with this name; 0 if it has fewer than two numbers.
+double largest_number_of(const Drawing& drawing, const std::string& axis) {
+  const std::vector<std::string> all = texts(drawing);
+  const auto name = std::find(all.begin(), all.end(), axis);
+  if (name == all.end()) {
+    ADD_FAILURE() << "no axis " << axis;
+    return 0;
+  }
+  // The numbers of an axis are drawn before its name, and the texts of the panel below are drawn
+  // later.
+  double most = 0;
+  int numbers = 0;
+  for (auto text = name; text-- > all.begin(); ++numbers) {
+    char* end = nullptr;
+    const double value = std::strtod(text->c_str(), &end);
+    if (end == text->c_str() || *end != 0) break;
+    most = std::max(most, std::abs(value));
+  }
+  EXPECT_GE(numbers, 2) << axis;
+  return most;
+}
+
 TEST(Loci, NamesWhatItShows) {
   const TwoRuns runs;
   const Drawing drawing = draw_loci(runs.both(), {});
@@ -137,24 +159,21 @@ TEST(Loci, TheMarginOfAFallenRunIsThatBeforeItsFall) {
   LociOptions options;
   options.model = &runs.model;
   const Drawing drawing = draw_loci({{"open loop", &runs.falling}}, options);
-  const std::vector<std::string> all = texts(drawing);
-  const auto margin = std::find(all.begin(), all.end(), "margin [mm]");
-  ASSERT_NE(margin, all.end());
-  // The numbers of an axis are drawn before its name or after it, and the texts of the panel below
-  // are drawn later.
-  double most = 0;
-  int numbers = 0;
-  for (auto text = margin - 1; text >= all.begin(); --text, ++numbers) {
-    char* end = nullptr;
-    const double value = std::strtod(text->c_str(), &end);
-    if (end == text->c_str() || *end != 0) break;
-    most = std::max(most, std::abs(value));
-  }
-  EXPECT_GE(numbers, 2) << *(margin - 1);
-  EXPECT_LT(most, 200);
+  EXPECT_LT(largest_number_of(drawing, "margin [mm]"), 200);
   EXPECT_TRUE(has(drawing,
                   "The axes fit the command and the time before the fall. The curves of a run that "
                   "falls end at the edge of the axes. A cross marks the fall."));
+}
+
+// In this run, the COG is 180 mm beside its command 0.05 s before the fall, and 320 mm at the fall.
+TEST(Loci, TheAxesOfRunsThatAllFallFitTheTimeBeforeTheFalls) {
+  const TwoRuns runs;
+  const double fallen =
+      largest_number_of(draw_loci({{"a", &runs.falling}, {"b", &runs.falling}}, {}), "COG y [mm]");
+  EXPECT_GE(fallen, 150);
+  EXPECT_LT(fallen, 245);
+  EXPECT_LT(largest_number_of(draw_loci(runs.both(), {}), "COG y [mm]"), 150)
+      << "a run that stands decides the axes";
 }
 
 TEST(Loci, TheLineGoesThroughTheSamples) {

@@ -124,6 +124,17 @@ TEST(Heat, TheHomePostureIsCold) {
   for (const float heat : joint_heat(at_limit, "", s)) EXPECT_EQ(heat, 0);
   s.state.theta[1] = -0.1;
   EXPECT_EQ(joint_heat(at_limit, "", s)[size_t(at_limit.dofs()[1].body)], 1);
+  // A home that is rounded to a place just inside the limit is no other case.
+  RobotDescription inside = box_robot().description();
+  for (JointDescription& joint : inside.joints) joint.lower = -1e-6;
+  const RobotModel near_limit(inside);
+  s.state = near_limit.rest_state();
+  for (const double yielded : {0.0, -2e-6, -0.01}) {
+    s.state.theta[1] = yielded;
+    for (const float heat : joint_heat(near_limit, "", s)) EXPECT_EQ(heat, 0) << yielded;
+  }
+  s.state.theta[1] = -0.1;
+  EXPECT_EQ(joint_heat(near_limit, "", s)[size_t(near_limit.dofs()[1].body)], 1);
   s.state.theta[1] = 1.95;
   EXPECT_GT(joint_heat(at_limit, "", s)[size_t(at_limit.dofs()[1].body)], 0.5);
 }

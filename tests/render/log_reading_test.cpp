@@ -123,6 +123,29 @@ TEST(LogReading, ALandingIsShownOnce) {
   }
 }
 
+// Nearer than 50 ms to the most bent knee, the lowest COG is not worth a picture.
+TEST(LogReading, ALandingIsShownBesideAPostureThatIsFarEnoughAway) {
+  for (const double apart : {0.035, 0.045, 0.055, 0.065}) {
+    SimulationLog log = test::box_run(test::box_robot());
+    size_t lowest = 0;
+    for (size_t k = 0; k < log.samples.size(); ++k) {
+      SimulationSample& s = log.samples[k];
+      const double t = static_cast<double>(k) * log.dt;
+      const auto bump = [&](double at) { return std::exp(-std::pow((t - at) / 0.02, 2)); };
+      s.push_force.setZero();
+      if (t > 0.5999 && t < 0.6999) s.planned_contact = {false, false};
+      s.state.theta[1] = 1.2 * bump(0.735);
+      s.cog.z() += 0.02 * bump(0.65) - 0.3 * s.cog.z() * bump(0.735 + apart);
+      if (s.cog.z() < log.samples[lowest].cog.z()) lowest = k;
+    }
+    const std::vector<double> times = telling_instants(log, 6);
+    const bool shown = std::any_of(times.begin(), times.end(), [&](double t) {
+      return std::abs(t - static_cast<double>(lowest) * log.dt) < 1e-9;
+    });
+    EXPECT_EQ(shown, apart > 0.05) << apart << " s";
+  }
+}
+
 // The made-up push lasts from 0.3 to 0.32 s.
 TEST(LogReading, PushesAreWorthShowing) {
   SimulationLog log = test::box_run(test::box_robot());

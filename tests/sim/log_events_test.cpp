@@ -25,7 +25,10 @@ TEST(LogEvents, EachKindHasItsName) {
   EXPECT_STREQ(name_of(study_case), "case");
   EXPECT_STREQ(name_of(touchdown), "touchdown");
   EXPECT_STREQ(name_of(EventKind::log), "log");
-  EXPECT_EQ(event_kind_names().size(), static_cast<size_t>(EventKind::log) + 1);
+  ASSERT_EQ(event_kind_names().size(), static_cast<size_t>(EventKind::log) + 1);
+  for (const EventKind kind : {study_case, controller, calibration, push, disturbance, saturation,
+                               contact, touchdown, fell, EventKind::log})
+    EXPECT_EQ(event_kind_names()[static_cast<size_t>(kind)], name_of(kind));
 }
 
 TEST(LogEvents, TheLastTouchdownsAreLeftOutFirst) {

@@ -195,10 +195,26 @@ TEST(UncertainTask, WritesEveryValueWithItsUnit) {
       {"what": "friction", "choice": [0.7], "source": "t"},
       {"what": "load_bias", "choice": [-0.25], "source": "t"},
       {"what": "sensor_latency", "choice": [0.003], "source": "t"}])");
-  const std::string words = t.task.values_text(values_of(t.task, 0));
-  for (const char* const part : {" times 1.1; ", "cog along y of l_foot +0.004 m; ",
-                                 "friction 0.7; ", " -0.25 N; ", " 0.003 s"})
-    EXPECT_NE(words.find(part), std::string::npos) << part << ": " << words;
+  const std::vector<std::string> kinds = t.task.values_by_kind(values_of(t.task, 0));
+  const std::vector<std::string> ends = {" times 1.1", "cog along y of l_foot +0.004 m",
+                                         "friction 0.7", " -0.25 N", " 0.003 s"};
+  ASSERT_EQ(kinds.size(), ends.size());
+  for (size_t i = 0; i < ends.size(); ++i) EXPECT_TRUE(kinds[i].ends_with(ends[i])) << kinds[i];
+}
+
+// The text of the event joins the kinds by "; ", which a name may contain as well.
+TEST(UncertainTask, GroupsValuesByKind) {
+  const StandingTask t(R"("quantities": [
+      {"what": "mass", "on": "l_foot", "choice": [1.1], "source": "t"},
+      {"what": "mass", "on": "r_foot", "choice": [1.2], "source": "t"},
+      {"what": "friction", "choice": [0.7], "source": "t"}],
+      "pushes": [{"unit": "N s", "direction": 0, "duration": 0.02, "size": 1, "time": 0.1,
+                  "on": {"choice": ["l_foot"], "source": "t"}}])");
+  const std::vector<std::string> kinds = t.task.values_by_kind(values_of(t.task, 0));
+  ASSERT_EQ(kinds.size(), 3u);
+  EXPECT_NE(kinds[0].find(" 1.1, "), std::string::npos) << kinds[0];
+  EXPECT_EQ(kinds[1], "friction 0.7");
+  EXPECT_NE(kinds[2].find("l_foot"), std::string::npos) << kinds[2];
 }
 
 TEST(UncertainTask, RefusesPushesThatHaveNoEffectAndValuesInAWrongUnit) {

@@ -141,15 +141,20 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
       if (candidate.starts_with(word) && (best.empty() || candidate.size() < best.size()))
         best = candidate;
   if (!best.empty()) return best;
+  // Among words with equal distances, one that the word begins is nearer.
+  bool begins_best = false;
   size_t best_distance = std::max<size_t>(2, word.size() / 3) + 1;
   for (const std::string& candidate : candidates) {
     // The distance is at least the difference of the lengths; a word may have megabytes.
     const auto [shorter, longer] = std::minmax({word.size(), candidate.size()});
-    if (longer - shorter >= best_distance) continue;
+    if (longer - shorter > best_distance) continue;
     const size_t distance = edit_distance(word, candidate);
-    if (distance < best_distance) {
+    const bool begins = candidate.starts_with(word);
+    if (distance < best_distance ||
+        (distance == best_distance && !best.empty() && begins && !begins_best)) {
       best_distance = distance;
       best = candidate;
+      begins_best = begins;
     }
   }
   return best;

@@ -494,8 +494,8 @@ std::string before_result(const std::string& instead) {
 
 // Used if no sequence of changes is enough. Returns the first smaller hop that is enough, or else
 // the hop that leaves the fewest errors at the servo's period, if they are fewer than `left`.
-std::optional<Candidate> smaller_hop(Trials trials, const RobotModel& model, const Pattern& pattern,
-                                     const TrialOutcome& found, int left) {
+std::optional<Candidate> smaller_hop(Trials& trials, const RobotModel& model,
+                                     const Pattern& pattern, const TrialOutcome& found, int left) {
   const Hypotheses hypotheses(model, pattern, found);  // the changes refer to it
   std::vector<Hypothesis> hops = hypotheses.of(Hypotheses::Kind::hops);
   std::vector<Mend> mends;
@@ -517,7 +517,7 @@ std::optional<Candidate> smaller_hop(Trials trials, const RobotModel& model, con
 // If bodies meet and no sequence of changes is enough: the smallest change of each kind that keeps
 // them apart and leaves no error. A named mistake that is enough comes before, because then these
 // ways out are not tried.
-std::vector<Explanation> room_for_bodies(Trials trials, const RobotModel& model,
+std::vector<Explanation> room_for_bodies(Trials& trials, const RobotModel& model,
                                          const Pattern& pattern, const TrialOutcome& found) {
   std::vector<Explanation> ways;
   if (found.meeting.empty()) return ways;
@@ -622,20 +622,31 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
     current = std::move(mended);
     found = left;
   }
+  result.trials = trials.made();
+  result.complete = !(trials.ended() || trials.left_out());
+  // Makes a few more of the `most_trials` trials, even if the search lost patience, because nothing
+  // else has found a remedy.
+  const auto with_few_trials = [&](const Pattern& of, int most, const auto& search) {
+    Trials few(model, of, options, progress, std::min(most, most_trials - result.trials));
+    auto best = search(few);
+    result.trials += few.made();
+    result.complete = result.complete && !few.ended();
+    return best;
+  };
   if (!found.good()) {
-    // These few trials are made even if the search ended, because nothing else has found a remedy.
-    const auto hop = smaller_hop(Trials(model, pattern, options, progress, kHopTrials), model,
-                                 pattern, given, found.errors);
+    const auto hop = with_few_trials(pattern, kHopTrials, [&](Trials& few) {
+      return smaller_hop(few, model, pattern, given, found.errors);
+    });
     if (hop) {
       result.found = {hop->hypothesis.says};
       found = hop->outcome;
       changed.clear();  // they are not named any more
     }
   }
-  bool named = found.good();  // whether something is named that is enough
-  if (!named) {
+  if (!found.good()) {
     const auto room = [&](const Pattern& of, const TrialOutcome& outcome) {
-      return room_for_bodies(Trials(model, of, options, progress, kRoomTrials), model, of, outcome);
+      return with_few_trials(of, kRoomTrials,
+                             [&](Trials& few) { return room_for_bodies(few, model, of, outcome); });
     };
     std::vector<Explanation> ways = room(pattern, given);
     if (ways.empty() && !changed.empty()) {
@@ -646,10 +657,9 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
       }
     }
     result.found.insert(result.found.end(), ways.begin(), ways.end());
-    named = !ways.empty();
   }
-  result.trials = trials.made();
-  result.complete = named || !(trials.ended() || trials.left_out());
+  // If a mistake is named that is enough, no other cause is needed. A way out is no such mistake.
+  result.complete = result.complete || found.good();
   return result;
 }
 

@@ -2,49 +2,18 @@
 // The place, the value and the limit of a finding in words: lengths are in mm, angles and their
 // rates in the unit of the pattern's angles.
 
-#include <Eigen/Core>
-#include <cmath>
 #include <string>
 
 #include "ayumi/base/sentence.hpp"
-#include "ayumi/base/significant.hpp"
+#include "ayumi/base/shown_amount.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/limits/finding.hpp"
 
 namespace ayumi {
 
-/// A unit for people: a value multiplied by `scale` is a value in the unit `name`.
-struct ShownUnit {
-  double scale = 1;
-  std::string name;
-};
-
-/// Shows "rad/s" as "deg/s" if angles are in degrees; other units are not changed.
-inline ShownUnit shown_unit(const std::string& unit, bool degrees) {
-  if (degrees && unit.starts_with("rad")) return {180 / EIGEN_PI, "deg" + unit.substr(3)};
-  return {1, unit};
-}
-
-/// The value and the limit, such as "300 deg, limit 1 deg", with as many digits as are needed to
-/// see the difference.
+/// The value and the limit of a finding.
 inline std::string amount_text(const Finding& finding) {
-  const ShownUnit shown = shown_unit(finding.unit, finding.in_degrees);
-  // From this value on, three digits are enough. Chosen: only accelerations are so large.
-  constexpr double kLarge = 9999.5;
-  const auto quantity = [&](double value, int more_digits) -> std::string {
-    if (finding.unit == "m") return text::fixed(1000 * value, 1 + more_digits) + " mm";
-    if (finding.unit == "1") return text::fixed(100 * value, more_digits) + " %";
-    const double number = value * shown.scale;
-    const int digits = std::abs(number) < kLarge ? 4 : 3;
-    return text::significant(number, digits + more_digits) + " " + shown.name;
-  };
-  // Largest number of additional digits. Chosen: a smaller difference is rounding of the
-  // computation.
-  constexpr int kMostMoreDigits = 6;
-  int more = 0;
-  while (more < kMostMoreDigits && quantity(finding.worst, more) == quantity(finding.limit, more))
-    ++more;
-  return quantity(finding.worst, more) + ", limit " + quantity(finding.limit, more);
+  return amount_text(finding.worst, finding.limit, finding.unit, finding.in_degrees);
 }
 
 /// The kind and the place, such as "joint_speed of l_knee" or "friction of the left foot".

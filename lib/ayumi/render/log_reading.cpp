@@ -227,8 +227,10 @@ void take(const SimulationLog& log, std::vector<Candidate> candidates, size_t co
   // Smallest distance of the largest moves from each other and from the ends [s]. Chosen: half of
   // the time of a quick step.
   constexpr double kShortest = 0.2;
-  // Smallest distance of a landing from other times [s]. Chosen: two pictures of one landing look
-  // the same; a landing from 5 mm lasts longer.
+  // Smallest distance of a landing from other times [s]. Chosen: within this time, two pictures of
+  // one landing look the same. With half of the value, the most bent knee and the lowest COG of one
+  // landing can be two pictures. With twice the value, the landing of a low hop can be left out: a
+  // fall of 10 mm takes 45 ms, so that the COG can be lowest less than 0.1 s after the apex.
   constexpr double kLanding = 0.05;
   double heaviest = 0;
   for (const Candidate& c : candidates)

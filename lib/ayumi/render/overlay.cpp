@@ -124,8 +124,8 @@ void add_pushes(Overlay& overlay, const std::vector<PushRecord>& pushed, double 
 }
 
 /// Returns 2/3 if a joint begins to be near a limit of its range, 1 at the limit, and less
-/// elsewhere. A joint whose home is at the limit is beyond it only if its servo yields by more than
-/// a limb's weight bends it.
+/// elsewhere. The value never begins to rise before the home. If the home is at the limit or close
+/// to it, the value is 1 only where the servo has yielded by more than a limb's weight bends it.
 double position_use(const Dof& dof, double theta, double home) {
   // The part of the range that is near a limit. Chosen: a tenth is 10 to 20 degrees of most joints.
   // With half of the value, a warning comes late; with twice, strongly bent knees are always
@@ -137,12 +137,12 @@ double position_use(const Dof& dof, double theta, double home) {
   double use = 0;
   for (const double side : {-1.0, 1.0}) {
     const double limit = side < 0 ? dof.lower : dof.upper;
-    const double left = side * (limit - theta), at_home = std::max(0.0, side * (limit - home));
-    const double near = std::min(kNear * (dof.upper - dof.lower), at_home / 3);
-    use = std::max(use, left <= 0 && at_home > 0                   ? 1.0
-                        : near > 0                                 ? 1 - left / (3 * near)
-                        : left < -kYield * (dof.upper - dof.lower) ? 1.0
-                                                                   : 0.0);
+    const double range = dof.upper - dof.lower, at_home = std::max(0.0, side * (limit - home));
+    // The distances from the limit at which the value is 0 and 1. At least kYield is between them.
+    const double cold = std::min(3 * kNear * range, at_home);
+    const double hot = std::min(0.0, cold - kYield * range);
+    const double left = side * (limit - theta);
+    use = std::max(use, hot < cold ? (cold - left) / (cold - hot) : left < hot ? 1.0 : 0.0);
   }
   return use;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ayumi/base/counted.hpp"
+#include "ayumi/base/shown_amount.hpp"
 #include "ayumi/base/significant.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
@@ -137,9 +138,8 @@ std::string figure(double value, const std::string& unit, bool in_degrees = true
   // has the unit of its hint, which is that of the pattern.
   if (unit == "m")
     return (digits == 3 ? millimetres(value) : significant(1e3 * value, digits)) + " mm";
-  if (unit.starts_with("rad") && in_degrees)
-    return significant(value * 180 / M_PI, digits) + " deg" + escaped(unit.substr(3));
-  return significant(value, digits) + (unit == "1" ? "" : " " + escaped(unit));
+  const ShownUnit shown = shown_unit(unit, in_degrees);
+  return significant(value * shown.scale, digits) + (unit == "1" ? "" : " " + escaped(shown.name));
 }
 
 // The value and its limit. If three digits are the same for both, both have more.

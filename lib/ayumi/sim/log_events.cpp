@@ -6,15 +6,40 @@
 
 namespace ayumi {
 
-const std::vector<std::string>& event_kind_names() {
-  static const std::vector<std::string> names = {
-      "case",       "controller", "calibration", "push", "disturbance",
-      "saturation", "contact",    "touchdown",   "fell", "log"};
-  return names;
+const char* name_of(EventKind kind) {
+  switch (kind) {
+    case EventKind::study_case:
+      return "case";
+    case EventKind::controller:
+      return "controller";
+    case EventKind::calibration:
+      return "calibration";
+    case EventKind::push:
+      return "push";
+    case EventKind::disturbance:
+      return "disturbance";
+    case EventKind::saturation:
+      return "saturation";
+    case EventKind::contact:
+      return "contact";
+    case EventKind::touchdown:
+      return "touchdown";
+    case EventKind::fell:
+      return "fell";
+    case EventKind::log:
+      return "log";
+  }
+  return "";
 }
 
-const char* name_of(EventKind kind) {
-  return event_kind_names()[static_cast<size_t>(kind)].c_str();
+const std::vector<std::string>& event_kind_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (int kind = 0; kind <= static_cast<int>(EventKind::log); ++kind)
+      all.emplace_back(name_of(static_cast<EventKind>(kind)));
+    return all;
+  }();
+  return names;
 }
 
 void limit_events(std::vector<SimulationEvent>& events, size_t most) {

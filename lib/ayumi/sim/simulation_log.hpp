@@ -77,7 +77,7 @@ enum class EventKind {
   contact,      ///< two bodies of the robot touch
   touchdown,    ///< a foot lands
   fell,         ///< the robot fell
-  log,          ///< a note on the log itself
+  log,          ///< a note on the log itself; the last kind
 };
 /// The name of the kind in files: "case", "controller", "push", ...
 const char* name_of(EventKind kind);

@@ -530,15 +530,18 @@ std::string UncertainTask::value_text(size_t i, double drawn) const {
   return name_text(value) + " " + words;
 }
 
-std::string UncertainTask::values_text(const std::vector<double>& drawn) const {
-  std::string words;
+std::vector<std::string> UncertainTask::values_by_kind(const std::vector<double>& drawn) const {
+  std::vector<std::string> kinds;
   for (size_t i = 0; i < drawn.size(); ++i) {
     const bool same_group =
         i > 0 && values_[i].push == values_[i - 1].push &&
         (values_[i].push >= 0 || values_[i].quantity->kind == values_[i - 1].quantity->kind);
-    words += (i == 0 ? "" : same_group ? ", " : "; ") + value_text(i, drawn[i]);
+    if (same_group)
+      kinds.back() += ", " + value_text(i, drawn[i]);
+    else
+      kinds.push_back(value_text(i, drawn[i]));
   }
-  return words;
+  return kinds;
 }
 
 }  // namespace ayumi

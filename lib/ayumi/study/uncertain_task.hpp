@@ -83,9 +83,9 @@ class UncertainTask {
   /// Runs a case until its end, or until the robot has fallen.
   CaseResult run(const CaseNumbers& numbers) const;
 
-  /// All values of a case in words with their units, such as "mass of torso x 1.032, mass of head x
-  /// 0.9871; friction 0.74". A semicolon separates kinds of values.
-  std::string values_text(const std::vector<double>& drawn) const;
+  /// All values of a case in words with their units, one text for each kind of values, such as
+  /// "mass of torso x 1.032, mass of head x 0.9871" and "friction 0.74".
+  std::vector<std::string> values_by_kind(const std::vector<double>& drawn) const;
 
  private:
   /// A value in words, with the name of a phase or link if it has one.

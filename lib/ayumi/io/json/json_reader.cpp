@@ -248,12 +248,12 @@ std::vector<std::pair<std::string, JsonNode>> JsonNode::members() const {
 }
 
 void JsonNode::only_keys(const std::vector<std::string>& known) const {
-  const std::string allowed = "; the keys allowed here are " + text::join(known, ", ");
-  if (!value_->is_object()) complain("expected an object, found " + kind_of(*value_) + allowed);
+  const auto allowed = [&] { return "; the keys allowed here are " + text::join(known, ", "); };
+  if (!value_->is_object()) complain("expected an object, found " + kind_of(*value_) + allowed());
   for (const auto& [key, value] : value_->items()) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
     const std::string hint = text::suggestion(key, known);
-    child(key, value).complain("unknown key" + (hint.empty() ? allowed : hint));
+    child(key, value).complain("unknown key" + (hint.empty() ? allowed() : hint));
   }
 }
 

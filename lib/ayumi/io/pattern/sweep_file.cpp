@@ -82,10 +82,10 @@ void require_setting(const JsonNode& node, const std::string& name) {
   known.insert(known.end(), kWholeNumbers.begin(), kWholeNumbers.end());
   known.insert(known.end(), kSwitches.begin(), kSwitches.end());
   if (contains(known, name)) return;
-  node.complain("there is no setting '" + name + "'" + text::suggestion(name, known) +
-                ". The settings are " + text::join(known, ", ") +
+  node.complain("there is no setting '" + name + "'. The settings are " + text::join(known, ", ") +
                 ", set.NAME (a parameter of the pattern), gain.NAME (a gain of the controller) and "
-                "value.NAME (a value in worlds and disturbances)");
+                "value.NAME (a value in worlds and disturbances)" +
+                text::suggestion(name, known));
 }
 
 double whole(const JsonNode& node, double least, double value) {

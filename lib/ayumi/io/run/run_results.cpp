@@ -6,7 +6,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/largest_number.hpp"
-#include "ayumi/base/significant.hpp"
+#include "ayumi/base/shown_amount.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/consistency.hpp"
 #include "ayumi/io/json/json_reader.hpp"
@@ -122,16 +122,12 @@ ExportNote export_of(const JsonNode& node) {
   note.worst_joint = node.at("worst_joint").string();
   for (const JsonNode& violation : node.at("violations").items()) {
     // The report has angles in degrees.
-    const std::string unit = violation.at("unit").string();
-    const bool angle = unit.starts_with("rad");
-    const auto quantity = [&](const char* key) {
-      return text::significant(read_figure(violation.at(key)) * (angle ? 180 / EIGEN_PI : 1), 3) +
-             " " + (angle ? "deg" + unit.substr(3) : unit);
-    };
+    const std::string amount =
+        amount_text(read_figure(violation.at("value")), read_figure(violation.at("limit")),
+                    violation.at("unit").string(), true);
     note.violations.push_back(violation.at("kind").string() + " of " +
                               violation.at("joint").string() + " at " +
-                              text::fixed(violation.at("at_s").number(), 3) +
-                              " s: " + quantity("value") + ", limit " + quantity("limit"));
+                              text::fixed(violation.at("at_s").number(), 3) + " s: " + amount);
   }
   return note;
 }

@@ -34,7 +34,7 @@ export function legWords(state, name) {
   const isLeg = (joint) => state.joints.some((one) => one.name === joint && one.leg);
   if (!isLeg(name) || state.tracks.some((track) => isLeg(track.joint))) return "";
   return `${name} is a joint of a leg. As soon as one leg joint has a key, all leg joints follow only their keys, ` +
-    "and the legs are no longer solved from the feet and the COG.";
+    "and the legs are no longer computed from the feet and the COG.";
 }
 
 /// Whether a time can be dragged. A time in a block that repeats stands for several times, so only
