@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <set>
 
 #include "ayumi/base/counted.hpp"
@@ -61,6 +62,10 @@ constexpr double kSmallestSole = 1e-6;
 // the highest and the lowest joint. Chosen: a foot of half the robot's height is a mistake of the
 // inertia; HOAP-1's foot measures a quarter.
 constexpr double kLargestFootBox = 0.5;
+// Factor by which such a box is longer than wide if its longer side is the direction of the foot.
+// Chosen: at this factor, a product of inertia of a tenth of the smaller second moment turns the
+// principal axes by 12 deg, and below it by more. HOAP-1's soles have a factor of 1.6.
+constexpr double kClearlyLonger = 1.2;
 // Fewest joints of a leg whose foot has no shape. Chosen: a hip, a knee and an ankle; fingers of a
 // hand have fewer joints of their own.
 constexpr int kFewestLegJoints = 3;
@@ -207,10 +212,22 @@ int own_joints(const RobotModel& model, int body, int other) {
   return count;
 }
 
+// Half of the sides of a box with these axes that has the mass and the second moments of a body.
+// Empty if there is no such box.
+std::optional<Vector3d> half_sides(double mass, const Eigen::Matrix3d& moments,
+                                   const Eigen::Matrix3d& axes) {
+  // A side a of a box of even density has the second moment m a^2 / 12.
+  const Vector3d squares = 12 / mass * (axes.transpose() * moments * axes).diagonal();
+  if (!(squares.minCoeff() > 0)) return std::nullopt;
+  return 0.5 * squares.cwiseSqrt();
+}
+
 // The corners, in the root frame, of the upright box that has the mass, the centre of mass and the
 // second moments of the body. Its sides are parallel to the body's principal axes along the ground.
-// Empty if there is no such box.
-Points inertia_box(const Body& body, const Isometry3d& pose) {
+// If these moments are nearly equal, small errors turn the principal axes by any angle, so the
+// sides are along and across `sideways`, the unit vector from foot to foot. Empty if there is no
+// such box.
+Points inertia_box(const Body& body, const Isometry3d& pose, const Vector2d& sideways) {
   const Inertia& inertia = body.inertia;
   if (!(inertia.mass > 0)) return {};
   const Eigen::Matrix3d tensor = pose.linear() * inertia.about_com * pose.linear().transpose();
@@ -219,16 +236,19 @@ Points inertia_box(const Body& body, const Isometry3d& pose) {
   const double difference = moments(0, 0) - moments(1, 1);
   const double turn =
       0.5 * elementary::atan2(std::copysign(2, difference) * moments(0, 1), std::abs(difference));
-  const Eigen::Matrix3d axes = rpy_to_matrix({0, 0, turn});
-  // A side a of a box of even density has the second moment m a^2 / 12.
-  const Vector3d squares = 12 / inertia.mass * (axes.transpose() * moments * axes).diagonal();
-  if (!(squares.minCoeff() > 0)) return {};
-  const Vector3d half = 0.5 * squares.cwiseSqrt(), center = pose * inertia.com;
+  Eigen::Matrix3d axes = rpy_to_matrix({0, 0, turn});
+  std::optional<Vector3d> half = half_sides(inertia.mass, moments, axes);
+  if (half && half->head<2>().maxCoeff() < kClearlyLonger * half->head<2>().minCoeff()) {
+    axes << sideways.y(), sideways.x(), 0, -sideways.x(), sideways.y(), 0, 0, 0, 1;
+    half = half_sides(inertia.mass, moments, axes);
+  }
+  if (!half) return {};
+  const Vector3d center = pose * inertia.com;
   Points corners;
   for (const double x : {-1, 1})
     for (const double y : {-1, 1})
       for (const double z : {-1, 1})
-        corners.push_back(center + axes * half.cwiseProduct(Vector3d(x, y, z)));
+        corners.push_back(center + axes * half->cwiseProduct(Vector3d(x, y, z)));
   return corners;
 }
 
@@ -269,7 +289,7 @@ std::vector<Foot> feet_without_shapes(const RobotModel& model, const std::vector
     return {};
   std::vector<Foot> feet;
   for (const int body : {bodies[0], bodies[1]}) {
-    Foot foot{body, inertia_box(model.bodies()[body], poses[body])};
+    Foot foot{body, inertia_box(model.bodies()[body], poses[body], between.head<2>().normalized())};
     if (foot.points.empty() || sizes_of(foot.points).maxCoeff() > kLargestFootBox * tall) return {};
     foot.lowest = lowest_of(foot.points);
     foot.of_inertia = true;
