@@ -314,6 +314,13 @@ TEST(FirstSidecar, ReadsBackAsItWasGuessed) {
     EXPECT_TRUE(inferred_soles(bare.description())
                     .starts_with("soles inferred from the points of the feet that are at most 1 mm "
                                  "above the ground: left l_foot, 130 x 70 mm, 4 corners; "));
+    // A sole that was measured is no longer inferred, whatever the sidecar's sentences say.
+    const std::regex mark("\"inferred_from\": \"shapes\",");
+    const std::string words = "\"assumptions\": [\"" + inferred_soles(bare.description()) + "\"],";
+    const RobotModel measured(load_robot_description(folder.write(
+        kind.name + "/robot.json", std::regex_replace(sidecar.text, mark, "")
+                                       .insert(sidecar.text.find("\"soles\": {"), words))));
+    EXPECT_EQ(inferred_soles(measured.description()), "");
     for (const std::string& each : stated.description().assumptions)
       EXPECT_TRUE(each.find("placeholders") != std::string::npos ||
                   each == inferred_soles(stated.description()))

@@ -17,6 +17,7 @@
 #include "ayumi/dynamics/self_collision.hpp"
 #include "ayumi/io/robot/facing.hpp"
 #include "ayumi/io/robot/mesh.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
 #include "ayumi/math/elementary.hpp"
 #include "ayumi/math/polygon.hpp"
 #include "ayumi/math/rotation.hpp"
@@ -589,6 +590,10 @@ Vector2d extent(const SoleDescription& sole) {
   return high - low;
 }
 
+std::string size_text(const Vector2d& size) {
+  return text::fixed(1000 * size.x(), 0) + " x " + text::fixed(1000 * size.y(), 0) + " mm";
+}
+
 void find_soles(RobotGuess& guess) {
   RobotDescription& robot = guess.robot;
   const RobotModel model(robot);
@@ -601,9 +606,6 @@ void find_soles(RobotGuess& guess) {
   if (poses[feet[0].body].translation().y() < poses[feet[1].body].translation().y())
     std::swap(feet[0], feet[1]);
   std::map<std::string, SoleDescription> soles;
-  const auto size_text = [](const Vector2d& size) {
-    return text::fixed(1000 * size.x(), 0) + " x " + text::fixed(1000 * size.y(), 0) + " mm";
-  };
   for (const int side : {0, 1}) {
     const std::string name = side == 0 ? "left" : "right";
     Vector2d higher;
@@ -636,18 +638,10 @@ void find_soles(RobotGuess& guess) {
                                 "as well: " +
                                 text::join(more, ", "));
   }
-  std::vector<std::string> sizes;
-  for (const auto& [side, sole] : soles)
-    sizes.push_back(side + " " + sole.link + ", " + size_text(extent(sole)) + ", " +
-                    std::to_string(sole.polygon.size()) + " corners");
-  robot.assumptions.push_back(
-      std::string(kInferredSoles) +
-      (feet[0].of_inertia ? "the masses and inertias of the feet, because the feet have no shapes: "
-                          : "the points of the feet that are at most 1 mm above the ground: ") +
-      text::join(sizes, "; "));
+  for (auto& [side, sole] : soles)
+    sole.source = feet[0].of_inertia ? SoleSource::inertias : SoleSource::shapes;
   robot.soles = soles;
   if (feet[0].of_inertia) {
-    guess.soles_of_inertia = true;
     guess.sole_reason = {
         "the feet have no shapes, so Ayumi takes each foot as a box of even density with the mass, "
         "the centre of mass and the inertia of this foot. These values are from \"links\" if this "
@@ -1272,6 +1266,22 @@ std::string direction_in_words(const RobotModel& model, int dof) {
          " moves " + carried + " " + words[major][positive ? 1 : 0];
 }
 
+std::string inferred_soles(const RobotDescription& robot) {
+  std::vector<std::string> sizes;
+  bool of_inertia = false;
+  for (const auto& [side, sole] : robot.soles) {
+    if (sole.source == SoleSource::stated || sole.polygon.empty()) continue;
+    of_inertia = sole.source == SoleSource::inertias;
+    sizes.push_back(side + " " + sole.link + ", " + size_text(extent(sole)) + ", " +
+                    std::to_string(sole.polygon.size()) + " corners");
+  }
+  if (sizes.empty()) return "";
+  return std::string("soles inferred from ") +
+         (of_inertia ? "the masses and inertias of the feet, because the feet have no shapes: "
+                     : "the points of the feet that are at most 1 mm above the ground: ") +
+         text::join(sizes, "; ");
+}
+
 RobotGuess guess_robot(RobotDescription robot) {
   RobotGuess guess;
   guess.robot = std::move(robot);
@@ -1286,6 +1296,8 @@ RobotGuess guess_robot(RobotDescription robot) {
     }
     find_soles(guess);
   }
+  if (const std::string soles = inferred_soles(files); !soles.empty())
+    files.assumptions.push_back(soles);
   guess.placeholders = placeholder_limits(RobotModel(files));
   if (!files.postures.contains("home") && !find_home(guess)) {
     const RobotModel model(files);
