@@ -1,8 +1,8 @@
 // With sole frames F (world) and S_k (in the base, row k), a foot that stands at F gives the base
 // the pose F S_k^-1. The next foothold of a foot B that lands beside A is F_A times the relative
 // pose S_A^-1 S_B while both support, made level. Feet that are not exactly level give the base two
-// poses while both support, and the base moves from one to the other. Nothing of this depends on
-// the ZMP, so the import never makes an inconsistent motion consistent.
+// poses while both support, and the base moves from one to the other.
+// No step looks at the ZMP, because a base that is placed by the ZMP hides errors of the motion.
 #include "ayumi/author/import/contact_reconstruction.hpp"
 
 #include <algorithm>
