@@ -110,24 +110,68 @@ TEST(Init, FiveJointLegsShuffle) {
   }
 }
 
-// The walk of legs with five joints comes back from a file that has joint angles only. Its soles
-// are not exactly level, so the place of the robot is known less exactly than with six joints.
-void expect_walk_comes_back_without_its_root(const std::string& robot) {
-  Folder folder;
-  if (robot.empty()) write(folder / "robot.urdf", UrdfBiped{.ankle_roll = false}.text());
-  const std::string file = robot.empty() ? "robot.urdf" : robot;
-  ASSERT_EQ(ayumi(folder, {"init", file, "-o", "robot"}).exit_code, 0);
+// A robot with legs of five joints and its walk, in a folder.
+void make_walk_of_five_joint_legs(const Folder& folder, const std::string& robot) {
+  ASSERT_EQ(ayumi(folder, {"init", robot, "-o", "robot"}).exit_code, 0);
   ASSERT_EQ(ayumi(folder, {"new", "walk", "--robot", "robot", "-o", "walk.json"}).exit_code, 0);
   ASSERT_EQ(
       ayumi(folder, {"export", "walk.json", "--format", "webots", "-o", "walk.motion"}).exit_code,
       0);
+}
+
+// What `check` says of a file that has joint angles only.
+Output checked_without_root(const Folder& folder, const std::string& motion) {
   const Output read =
-      ayumi(folder, {"import", "walk.motion", "--robot", "robot", "-o", "back.json"});
-  ASSERT_EQ(read.exit_code, 0) << read.err;
+      ayumi(folder, {"import", motion, "--robot", "robot", "-o", "back.json", "--force"});
+  EXPECT_EQ(read.exit_code, 0) << read.err;
   EXPECT_NE(read.out.find("the soles are not exactly level"), std::string::npos) << read.out;
-  const Output check = ayumi(folder, {"check", "back.json"});
-  EXPECT_EQ(check.exit_code, 0) << check.out;
-  // With the track of its root, only the times of the contacts have to be found.
+  EXPECT_NE(read.out.find("which alone moves the ZMP by up to "), std::string::npos) << read.out;
+  return ayumi(folder, {"check", "back.json"});
+}
+
+// A file in the format of Webots, with the rows `speed` times as fast: Lagrange's polynomial
+// through six rows.
+std::string faster(const std::string& motion, double speed) {
+  std::istringstream lines(motion);
+  std::string line, text;
+  std::getline(lines, line);
+  text = line + "\n";
+  std::vector<std::vector<double>> rows;
+  while (std::getline(lines, line)) {
+    std::istringstream cells(line);
+    std::string cell;
+    std::getline(cells, cell, ',');  // time
+    std::getline(cells, cell, ',');  // name of the pose
+    rows.emplace_back();
+    while (std::getline(cells, cell, ',')) rows.back().push_back(std::stod(cell));
+  }
+  const int count = static_cast<int>(rows.size());
+  for (int k = 0; k < static_cast<int>((count - 1) / speed); ++k) {
+    const double x = speed * k;
+    const int first = std::clamp(static_cast<int>(x), 2, count - 4) - 2;
+    std::vector<double> row(rows[0].size(), 0.0);
+    for (int i = first; i < first + 6; ++i) {
+      double weight = 1;
+      for (int j = first; j < first + 6; ++j)
+        if (j != i) weight *= (x - j) / (i - j);
+      for (size_t c = 0; c < row.size(); ++c) row[c] += weight * rows[static_cast<size_t>(i)][c];
+    }
+    std::ostringstream out;
+    out << std::setprecision(17) << std::setfill('0') << "00:" << std::setw(2) << k / 1000 << ':'
+        << std::setw(3) << k % 1000 << ",Pose" << k + 1;
+    for (const double value : row) out << ',' << value;
+    text += out.str() + "\n";
+  }
+  return text;
+}
+
+// The walk of legs with five joints comes back from a file with the track of its root, from which
+// only the times of the contacts have to be found. Without this track, its soles, which are not
+// exactly level, do not say exactly where the robot is.
+TEST(Init, AWalkOfFiveJointLegsComesBack) {
+  Folder folder;
+  write(folder / "robot.urdf", UrdfBiped{.ankle_roll = false}.text());
+  make_walk_of_five_joint_legs(folder, "robot.urdf");
   ASSERT_EQ(ayumi(folder, {"export", "walk.json", "--format", "tracking-npz", "-o", "walk.npz"})
                 .exit_code,
             0);
@@ -135,16 +179,28 @@ void expect_walk_comes_back_without_its_root(const std::string& robot) {
             0);
   const Output whole = ayumi(folder, {"check", "whole.json"});
   EXPECT_EQ(whole.exit_code, 0) << whole.out;
+  checked_without_root(folder, "walk.motion");
 }
 
-TEST(Init, AWalkOfFiveJointLegsComesBackWithoutItsRoot) {
-  expect_walk_comes_back_without_its_root("");
-}
-
-TEST(Init, AWalkOfH1ComesBackWithoutItsRoot) {
+// Without the track of its root, the contacts of H1's walk are found to 8 ms, so that the soles
+// rest, but its ZMP is not known well enough. Faster walks are inconsistent, with the track or
+// without it. An earlier version placed the base so that the ZMP was inside the support, and judged
+// the walk that is 8 % faster as consistent.
+TEST(Init, H1sFasterWalksWithoutTheirRootStayInconsistent) {
   const std::string robot = AYUMI_SOURCE_DIR "/../shared/data/unitree_h1/urdf/h1.urdf";
   if (!fs::exists(robot)) GTEST_SKIP() << "the folder of Unitree H1 is not there";
-  expect_walk_comes_back_without_its_root(robot);
+  Folder folder;
+  make_walk_of_five_joint_legs(folder, robot);
+  const Output own = checked_without_root(folder, "walk.motion");
+  for (const char* const broken : {"error   slip", "error   penetration", "error   foot_float"})
+    EXPECT_EQ(own.out.find(broken), std::string::npos) << own.out;
+  const std::string walk = contents(folder / "walk.motion");
+  for (const double speed : {1.08, 1.1}) {
+    write(folder / "fast.motion", faster(walk, speed));
+    const Output check = checked_without_root(folder, "fast.motion");
+    EXPECT_EQ(check.exit_code, 1) << check.out;
+    EXPECT_NE(check.out.find("error   support_margin"), std::string::npos) << check.out;
+  }
 }
 
 // Open Duck Mini has legs of five joints, its hips are as low as its COG, and its joint limits only

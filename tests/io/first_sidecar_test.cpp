@@ -314,6 +314,13 @@ TEST(FirstSidecar, ReadsBackAsItWasGuessed) {
     EXPECT_TRUE(inferred_soles(bare.description())
                     .starts_with("soles inferred from the points of the feet that are at most 1 mm "
                                  "above the ground: left l_foot, 130 x 70 mm, 4 corners; "));
+    // A sole that was measured is no longer inferred, whatever the sidecar's sentences say.
+    const std::regex mark("\"inferred_from\": \"shapes\",");
+    const std::string words = "\"assumptions\": [\"" + inferred_soles(bare.description()) + "\"],";
+    const RobotModel measured(load_robot_description(folder.write(
+        kind.name + "/robot.json", std::regex_replace(sidecar.text, mark, "")
+                                       .insert(sidecar.text.find("\"soles\": {"), words))));
+    EXPECT_EQ(inferred_soles(measured.description()), "");
     for (const std::string& each : stated.description().assumptions)
       EXPECT_TRUE(each.find("placeholders") != std::string::npos ||
                   each == inferred_soles(stated.description()))
@@ -545,8 +552,8 @@ TEST(FirstSidecar, RefusesARobotThatHasOne) {
 }
 
 // The text of a biped whose legs have meshes that do not exist, in the place of their shapes.
-std::string biped_without_meshes(double facing = 0) {
-  std::string text = UrdfBiped{.facing = facing}.text();
+std::string biped_without_meshes(const UrdfBiped& kind = {}) {
+  std::string text = kind.text();
   for (const std::string side : {"l_", "r_"})
     for (const std::string link : {"thigh", "shank", "foot"}) {
       const size_t from = text.find("<link name=\"" + side + link);
@@ -568,7 +575,8 @@ TEST(FirstSidecar, TheInertiasOfFeetGiveTheSolesWhereTheMeshesAreMissing) {
     SCOPED_TRACE(facing);
     const TemporaryFolder folder;
     const RobotModel whole(read({.name = "whole", .facing = facing}, folder));
-    const std::string file = folder.write("r.urdf", biped_without_meshes(facing)).string();
+    const std::string file =
+        folder.write("r.urdf", biped_without_meshes({.facing = facing})).string();
     const FirstSidecar sidecar = first_sidecar(file, folder.path() / "r");
     ASSERT_EQ(sidecar.robot.soles.size(), 2u);
     EXPECT_TRUE(has_item(sidecar, "Measure the soles and state them. The feet have no shapes"));
@@ -595,6 +603,26 @@ TEST(FirstSidecar, TheInertiasOfFeetGiveTheSolesWhereTheMeshesAreMissing) {
                                      all.find("r_foot.stl of link r_foot") != std::string::npos;
                             }));
     EXPECT_TRUE(says(inferred_soles(model.description()), "masses and inertias of the feet"));
+  }
+}
+
+// The principal axes of a square foot are arbitrary: a product of inertia that is 0.2 % of a moment
+// would turn them by 45 deg, and the corners of the sole would be 71 mm ahead of its centre.
+TEST(FirstSidecar, SquareFeetWithoutShapesAreNotTurned) {
+  for (const double width : {0.1, 0.098}) {
+    const TemporaryFolder folder;
+    std::string text = biped_without_meshes({.foot_length = 0.1, .foot_width = width});
+    for (const char* const link : {"l_foot", "r_foot"}) {
+      const size_t from = text.find("ixy=\"", text.find("<link name=\"" + std::string(link))) + 5;
+      text.replace(from, text.find('"', from) - from, "1e-5");
+    }
+    const RobotModel model(load_robot_description(folder.write("r.urdf", text).string()));
+    for (const Side side : {Side::left, Side::right}) {
+      Eigen::AlignedBox2d sole;
+      for (const Eigen::Vector2d& corner : model.sole(side).polygon) sole.extend(corner);
+      EXPECT_NEAR(sole.sizes().x(), 0.1, 1e-6);
+      EXPECT_NEAR(sole.sizes().y(), width, 1e-6);
+    }
   }
 }
 

@@ -141,6 +141,10 @@ struct SequenceLayout {
   size_t columns() const { return before.size() + static_cast<size_t>(motors) + after.size(); }
 };
 
+/// Where a sole comes from: a file states it, or it was inferred from the shapes of the foot, or
+/// from its mass and inertia.
+enum class SoleSource { stated, shapes, inertias };
+
 /// A foot: the polygon of its sole.
 struct SoleDescription {
   std::string link;  ///< link of the foot
@@ -151,6 +155,7 @@ struct SoleDescription {
   /// Stiffness of the whole sole on the ground [N/m]; 0 if it is derived from the mass.
   double stiffness = 0;
   double damping_time = 0;  ///< ratio of contact damping to stiffness [s]; 0 for the default
+  SoleSource source = SoleSource::stated;
 };
 
 /// How recorded readings of a robot's load cells become forces. Polynomials begin with the highest

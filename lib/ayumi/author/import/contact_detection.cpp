@@ -347,6 +347,10 @@ std::vector<Support> without_swing_ends(const RobotModel& model, const RawMotion
   // With half of the value, contact 1 of the imported walk ends at 1.678 s instead of 1.681 s; with
   // twice, at 1.683 s.
   constexpr double kAtRest = 1e-5;
+  // A sole that sinks down to kAtRest for more than this share of the time from the edge to the
+  // middle takes up load and does not end its swing. Chosen: a half, between the slow end of a
+  // swing and a sole that sinks as long as it carries the robot.
+  constexpr double kSinking = 0.5;
   for (const Stretch& run : stretches(supports)) {
     if (run.support != Support::both) continue;
     for (const int step : {1, -1}) {
@@ -361,8 +365,7 @@ std::vector<Support> without_swing_ends(const RobotModel& model, const RawMotion
       const double place = height(least);
       int rest = edge;
       while (rest != least && height(rest) > place + kAtRest) rest += step;
-      // A sole that sinks nearly all the time takes up load.
-      if (least == middle && 2 * std::abs(rest - edge) > std::abs(middle - edge)) continue;
+      if (least == middle && std::abs(rest - edge) > kSinking * std::abs(middle - edge)) continue;
       for (int k = edge; k != rest; k += step) supports[k] = supports[outside];
     }
   }

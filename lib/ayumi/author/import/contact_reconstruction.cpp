@@ -1,14 +1,13 @@
 // With sole frames F (world) and S_k (in the base, row k), a foot that stands at F gives the base
 // the pose F S_k^-1. The next foothold of a foot B that lands beside A is F_A times the relative
 // pose S_A^-1 S_B while both support, made level. Feet that are not exactly level give the base two
-// poses while both support; within this difference, the base is where the ZMP is inside the
-// support.
+// poses while both support, and the base moves from one to the other.
+// No step looks at the ZMP, because a base that is placed by the ZMP hides errors of the motion.
 #include "ayumi/author/import/contact_reconstruction.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "ayumi/author/import/base_of_soles.hpp"
 #include "ayumi/author/import/contact_detection.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
@@ -16,6 +15,7 @@
 #include "ayumi/math/elementary.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/math/track.hpp"
+#include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
 
@@ -51,7 +51,7 @@ class Grounding {
       read_feet();
     if (!motion_.base.empty()) return;
     find_disagreement();
-    levels_both_ = disagreement_.length() > kLevelFeet && soles_stay_parallel();
+    levels_both_ = disagreement_.length > kLevelFeet && soles_stay_parallel();
   }
 
   GroundedMotion whole(const std::string& table) const {
@@ -71,6 +71,12 @@ class Grounding {
   }
 
  private:
+  // How much the feet differ about the place of the base while both support [m].
+  struct Disagreement {
+    double length = 0;  // between the two places
+    double zmp = 0;     // by which the ZMP moves because the base moves from one to the other
+  };
+
   // The last row has no time of its own, so a change in it belongs to the rows before.
   static std::vector<Stretch> with_last_row(std::vector<Stretch> runs) {
     if (runs.size() < 2 || runs.back().first < runs.back().last) return runs;
@@ -126,12 +132,31 @@ class Grounding {
   // Feet that differ by less are taken as level [m]. Chosen: rounded angles give this difference.
   static constexpr double kLevelFeet = 0.0001;
 
-  // How the feet differ about the place of the base while both support.
   void find_disagreement() {
-    for (size_t r = 0; r < runs_.size(); ++r)
-      if (runs_[r].support == Support::both)
-        for (int k = runs_[r].first; k <= runs_[r].last; ++k)
-          disagreement_.add(base_by(r, 0, k), base_by(r, 1, k));
+    for (size_t r = 0; r < runs_.size(); ++r) {
+      if (runs_[r].support != Support::both) continue;
+      double length = 0;
+      for (int k = runs_[r].first; k <= runs_[r].last; ++k)
+        length = std::max(length,
+                          (base_by(r, 0, k).translation() - base_by(r, 1, k).translation()).norm());
+      disagreement_.length = std::max(disagreement_.length, length);
+      disagreement_.zmp = std::max(disagreement_.zmp, moved_zmp(r, length));
+    }
+  }
+
+  // How far the ZMP moves [m] because the base moves by `length` from one foot to the other: h/g
+  // times the peak acceleration of minimum jerk, which is 10/sqrt(3) for a unit path in a unit
+  // time.
+  double moved_zmp(size_t run, double length) const {
+    const auto [from, to] = shares_at_ends(run);
+    const double duration = time(runs_[run].last - runs_[run].first + 2);
+    RobotState state = model_.rest_state();
+    state.theta = motion_.theta.row(middle(run)).transpose();
+    RobotData data(model_);
+    update_positions(model_, state, data);
+    const double height = (soles_[0][middle(run)].inverse() * data.cog).z();
+    return height * std::abs(to - from) * length * 10 / std::sqrt(3.0) / (duration * duration) /
+           kGravity;
   }
 
   // Whether the soles are parallel in all rows, in swings too. Then the motion was made for level
@@ -147,32 +172,16 @@ class Grounding {
   }
 
   std::vector<std::string> notes_of_disagreement() const {
-    const double length = disagreement_.length();
-    if (length < kLevelFeet) return {};
+    if (disagreement_.length < kLevelFeet) return {};
     return {
         "the soles are not exactly level: while both stand, the places that they give the base "
         "differ by up to " +
-        millimetres(length) +
-        ". Within this difference, the base is placed so that the ZMP leaves the support as "
-        "little as possible"};
-  }
-
-  std::vector<BasePose> base() const {
-    std::vector<BasePose> level = base_by_feet();
-    if (disagreement_.length() < kLevelFeet) return level;
-    SupportRegions support;
-    for (size_t r = 0; r < runs_.size(); ++r) {
-      std::vector<Eigen::Vector2d> corners;
-      for (int foot : {0, 1}) {
-        if (!carries(r, foot)) continue;
-        for (const Eigen::Vector2d& v : model_.sole(static_cast<Side>(foot)).polygon)
-          corners.push_back((place_[r][foot] * Vector3d(v.x(), v.y(), 0)).head<2>());
-      }
-      support.regions.emplace_back(std::move(corners));
-      for (int k = runs_[r].first; k <= runs_[r].last; ++k) support.of_row.push_back(r);
-    }
-    return base_with_zmp_inside(model_, motion_.theta, motion_.dt, std::move(level), support,
-                                disagreement_);
+        millimetres(disagreement_.length) +
+        ". The base moves from one place to the other, which alone moves the ZMP by up to " +
+        millimetres(disagreement_.zmp) +
+        ", so the ZMP that `check` judges is uncertain by this length or more. A file that also "
+        "has "
+        "the track of the root has no such error"};
   }
 
   int middle(size_t run) const { return (runs_[run].first + runs_[run].last) / 2; }
@@ -259,12 +268,16 @@ class Grounding {
     }
   }
 
-  // Share of the right foot in the interpolation of the base's pose, from 0 to 1.
-  double share(size_t run, int k) const {
+  // Shares of the right foot in the base's pose at both ends of a run, from 0 to 1.
+  std::array<double, 2> shares_at_ends(size_t run) const {
     const auto single = [&](size_t r) { return runs_[r].support == Support::right ? 1.0 : 0.0; };
-    const bool before = run > 0, after = run + 1 < runs_.size();
-    if (runs_[run].support != Support::both) return single(run);
-    const double from = before ? single(run - 1) : 0.5, to = after ? single(run + 1) : 0.5;
+    if (runs_[run].support != Support::both) return {single(run), single(run)};
+    return {run > 0 ? single(run - 1) : 0.5, run + 1 < runs_.size() ? single(run + 1) : 0.5};
+  }
+
+  // This share in row k.
+  double share(size_t run, int k) const {
+    const auto [from, to] = shares_at_ends(run);
     const double u =
         static_cast<double>(k - runs_[run].first + 1) / (runs_[run].last - runs_[run].first + 2);
     return from + (to - from) * minimum_jerk(u).value;
@@ -304,7 +317,7 @@ class Grounding {
     dense.cog = motion_.cog;
     dense.zmp = motion_.zmp;
     dense.fz = motion_.fz;
-    if (motion_.base.empty()) dense.base = base();
+    if (motion_.base.empty()) dense.base = base_by_feet();
     pattern.table = std::move(dense);
   }
 
@@ -312,7 +325,7 @@ class Grounding {
   const RawMotion& motion_;
   const Soles& soles_;
   const std::vector<Stretch> runs_;
-  SoleDisagreement disagreement_;
+  Disagreement disagreement_;
   bool levels_both_ = false;  // both soles are leveled, not only those that stand
   std::vector<std::array<Isometry3d, 2>> place_;  // places of the feet, by run, then by Side
 };

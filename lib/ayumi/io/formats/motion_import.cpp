@@ -696,10 +696,9 @@ void say_rough_angles(const RobotModel& model, ImportedMotion& imported) {
   }
   if (worst < kSaid) return;
   imported.filled.push_back(
-      "the angles are rough, as if they were rounded or measured with noise. From row to row, the "
-      "acceleration of " +
-      model.dof_names()[static_cast<size_t>(joint)] + " changes with a root mean square of " +
-      text::brief(worst, 2) +
+      "the angles are rough, as if they were rounded or measured with noise. The root mean square "
+      "of the acceleration of " +
+      model.dof_names()[static_cast<size_t>(joint)] + " is " + text::brief(worst, 2) +
       (model.dofs()[static_cast<size_t>(joint)].prismatic ? " m/s2" : " rad/s2") +
       ". Ayumi computes the forces from the accelerations, so the forces are rough too. --smooth "
       "DEG smooths the angles and changes each angle by at most DEG degrees (try 0.1)");

@@ -107,6 +107,10 @@ std::string sole_text(const SoleDescription& sole, const RobotModel& model, Side
   if (rpy.norm() > 1e-6)
     text += "      \"rpy\": [" + rounded_text(rpy.x(), 6) + ", " + rounded_text(rpy.y(), 6) + ", " +
             rounded_text(rpy.z(), 6) + "],\n";
+  if (sole.source != SoleSource::stated)
+    text += std::string("      \"inferred_from\": \"") +
+            (sole.source == SoleSource::shapes ? "shapes" : "inertias") +
+            "\",  // delete this when the sole is that of the robot\n";
   const Sole& whole = model.sole(side);
   return text + "      \"polygon\": [" + text::join(corners, ", ") +
          "],\n      \"stiffness\": " + text::brief(whole.stiffness, 3) +
@@ -194,16 +198,6 @@ std::string sole_in_words(const RobotModel& model, Side side) {
          " wide, and reaches " + reach;
 }
 
-// `check` and `inspect` repeat this assumption as long as it is in the sidecar.
-std::string assumption_text(const RobotModel& model) {
-  const std::string soles = inferred_soles(model.description());
-  if (soles.empty()) return "";
-  return remark(
-             "check and inspect print this assumption. Delete it when the soles above are those "
-             "of the robot.") +
-         "  \"assumptions\": [" + json_text(soles) + "],\n";
-}
-
 std::string soles_text(const RobotModel& model, const RobotGuess& guess) {
   if (!model.has_soles())
     return remark(
@@ -219,7 +213,7 @@ std::string soles_text(const RobotModel& model, const RobotGuess& guess) {
              "the whole weight compresses hard rubber by 0.1 mm. Check these values by loading a "
              "foot. The softness of the soles can decide whether the robot falls when it walks.") +
          "  \"soles\": {\n" + sole_text(soles.at("left"), model, Side::left) + ",\n" +
-         sole_text(soles.at("right"), model, Side::right) + "\n  },\n" + assumption_text(model);
+         sole_text(soles.at("right"), model, Side::right) + "\n  },\n";
 }
 
 std::string home_text(const RobotModel& model, const RobotGuess& guess) {
@@ -565,7 +559,7 @@ std::vector<std::string> to_do_list(const RobotModel& model, const RobotGuess& g
               "meshes (see below) and run `ayumi init` again, or state the soles of both "
               "feet. Without soles no motion can be made.");
   } else {
-    if (guess.soles_of_inertia)
+    if (model.description().soles.at("left").source == SoleSource::inertias)
       items.push_back(
           "Measure the soles and state them. The feet have no shapes, so this sidecar has the "
           "undersides of boxes with the inertias of the feet. Every verdict about a motion depends "

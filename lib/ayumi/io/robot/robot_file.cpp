@@ -152,12 +152,6 @@ RobotDescription load_robot_description(const std::string& name_or_path, const R
   return guess_robot(std::move(robot)).robot;
 }
 
-std::string inferred_soles(const RobotDescription& robot) {
-  for (const std::string& assumption : robot.assumptions)
-    if (assumption.starts_with(kInferredSoles)) return assumption;
-  return "";
-}
-
 RobotModel load_robot(const std::string& name_or_path, const RobotSearch& search,
                       const LoadOptions& options) {
   return RobotModel(load_robot_description(name_or_path, search, options));

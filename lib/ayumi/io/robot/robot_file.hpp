@@ -42,8 +42,8 @@ RobotDescription load_robot_description(const std::string& name_or_path,
                                         const RobotSearch& search = {},
                                         const LoadOptions& options = {});
 
-/// The assumption about soles that were inferred, in words; empty if the robot's files state the
-/// soles. The sidecar of `init` has this assumption, too.
+/// The assumption about soles that were inferred (SoleDescription::source), in words; empty if both
+/// soles are stated. The sidecar of `init` has inferred soles, too, and marks them.
 std::string inferred_soles(const RobotDescription& robot);
 
 /// The robot of load_robot_description() as a validated model.

@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <set>
 
 #include "ayumi/base/counted.hpp"
@@ -16,6 +17,7 @@
 #include "ayumi/dynamics/self_collision.hpp"
 #include "ayumi/io/robot/facing.hpp"
 #include "ayumi/io/robot/mesh.hpp"
+#include "ayumi/io/robot/robot_file.hpp"
 #include "ayumi/math/elementary.hpp"
 #include "ayumi/math/polygon.hpp"
 #include "ayumi/math/rotation.hpp"
@@ -61,6 +63,10 @@ constexpr double kSmallestSole = 1e-6;
 // the highest and the lowest joint. Chosen: a foot of half the robot's height is a mistake of the
 // inertia; HOAP-1's foot measures a quarter.
 constexpr double kLargestFootBox = 0.5;
+// Factor by which such a box is longer than wide if its longer side is the direction of the foot.
+// Chosen: at this factor, a product of inertia of a tenth of the smaller second moment turns the
+// principal axes by 12 deg, and below it by more. HOAP-1's soles have a factor of 1.6.
+constexpr double kClearlyLonger = 1.2;
 // Fewest joints of a leg whose foot has no shape. Chosen: a hip, a knee and an ankle; fingers of a
 // hand have fewer joints of their own.
 constexpr int kFewestLegJoints = 3;
@@ -207,10 +213,22 @@ int own_joints(const RobotModel& model, int body, int other) {
   return count;
 }
 
+// Half of the sides of a box with these axes that has the mass and the second moments of a body.
+// Empty if there is no such box.
+std::optional<Vector3d> half_sides(double mass, const Eigen::Matrix3d& moments,
+                                   const Eigen::Matrix3d& axes) {
+  // A side a of a box of even density has the second moment m a^2 / 12.
+  const Vector3d squares = 12 / mass * (axes.transpose() * moments * axes).diagonal();
+  if (!(squares.minCoeff() > 0)) return std::nullopt;
+  return 0.5 * squares.cwiseSqrt();
+}
+
 // The corners, in the root frame, of the upright box that has the mass, the centre of mass and the
 // second moments of the body. Its sides are parallel to the body's principal axes along the ground.
-// Empty if there is no such box.
-Points inertia_box(const Body& body, const Isometry3d& pose) {
+// If these moments are nearly equal, small errors turn the principal axes by any angle, so the
+// sides are along and across `sideways`, the unit vector from foot to foot. Empty if there is no
+// such box.
+Points inertia_box(const Body& body, const Isometry3d& pose, const Vector2d& sideways) {
   const Inertia& inertia = body.inertia;
   if (!(inertia.mass > 0)) return {};
   const Eigen::Matrix3d tensor = pose.linear() * inertia.about_com * pose.linear().transpose();
@@ -219,16 +237,19 @@ Points inertia_box(const Body& body, const Isometry3d& pose) {
   const double difference = moments(0, 0) - moments(1, 1);
   const double turn =
       0.5 * elementary::atan2(std::copysign(2, difference) * moments(0, 1), std::abs(difference));
-  const Eigen::Matrix3d axes = rpy_to_matrix({0, 0, turn});
-  // A side a of a box of even density has the second moment m a^2 / 12.
-  const Vector3d squares = 12 / inertia.mass * (axes.transpose() * moments * axes).diagonal();
-  if (!(squares.minCoeff() > 0)) return {};
-  const Vector3d half = 0.5 * squares.cwiseSqrt(), center = pose * inertia.com;
+  Eigen::Matrix3d axes = rpy_to_matrix({0, 0, turn});
+  std::optional<Vector3d> half = half_sides(inertia.mass, moments, axes);
+  if (half && half->head<2>().maxCoeff() < kClearlyLonger * half->head<2>().minCoeff()) {
+    axes << sideways.y(), sideways.x(), 0, -sideways.x(), sideways.y(), 0, 0, 0, 1;
+    half = half_sides(inertia.mass, moments, axes);
+  }
+  if (!half) return {};
+  const Vector3d center = pose * inertia.com;
   Points corners;
   for (const double x : {-1, 1})
     for (const double y : {-1, 1})
       for (const double z : {-1, 1})
-        corners.push_back(center + axes * half.cwiseProduct(Vector3d(x, y, z)));
+        corners.push_back(center + axes * half->cwiseProduct(Vector3d(x, y, z)));
   return corners;
 }
 
@@ -269,7 +290,7 @@ std::vector<Foot> feet_without_shapes(const RobotModel& model, const std::vector
     return {};
   std::vector<Foot> feet;
   for (const int body : {bodies[0], bodies[1]}) {
-    Foot foot{body, inertia_box(model.bodies()[body], poses[body])};
+    Foot foot{body, inertia_box(model.bodies()[body], poses[body], between.head<2>().normalized())};
     if (foot.points.empty() || sizes_of(foot.points).maxCoeff() > kLargestFootBox * tall) return {};
     foot.lowest = lowest_of(foot.points);
     foot.of_inertia = true;
@@ -569,6 +590,10 @@ Vector2d extent(const SoleDescription& sole) {
   return high - low;
 }
 
+std::string size_text(const Vector2d& size) {
+  return text::fixed(1000 * size.x(), 0) + " x " + text::fixed(1000 * size.y(), 0) + " mm";
+}
+
 void find_soles(RobotGuess& guess) {
   RobotDescription& robot = guess.robot;
   const RobotModel model(robot);
@@ -581,9 +606,6 @@ void find_soles(RobotGuess& guess) {
   if (poses[feet[0].body].translation().y() < poses[feet[1].body].translation().y())
     std::swap(feet[0], feet[1]);
   std::map<std::string, SoleDescription> soles;
-  const auto size_text = [](const Vector2d& size) {
-    return text::fixed(1000 * size.x(), 0) + " x " + text::fixed(1000 * size.y(), 0) + " mm";
-  };
   for (const int side : {0, 1}) {
     const std::string name = side == 0 ? "left" : "right";
     Vector2d higher;
@@ -616,18 +638,10 @@ void find_soles(RobotGuess& guess) {
                                 "as well: " +
                                 text::join(more, ", "));
   }
-  std::vector<std::string> sizes;
-  for (const auto& [side, sole] : soles)
-    sizes.push_back(side + " " + sole.link + ", " + size_text(extent(sole)) + ", " +
-                    std::to_string(sole.polygon.size()) + " corners");
-  robot.assumptions.push_back(
-      std::string(kInferredSoles) +
-      (feet[0].of_inertia ? "the masses and inertias of the feet, because the feet have no shapes: "
-                          : "the points of the feet that are at most 1 mm above the ground: ") +
-      text::join(sizes, "; "));
+  for (auto& [side, sole] : soles)
+    sole.source = feet[0].of_inertia ? SoleSource::inertias : SoleSource::shapes;
   robot.soles = soles;
   if (feet[0].of_inertia) {
-    guess.soles_of_inertia = true;
     guess.sole_reason = {
         "the feet have no shapes, so Ayumi takes each foot as a box of even density with the mass, "
         "the centre of mass and the inertia of this foot. These values are from \"links\" if this "
@@ -1252,6 +1266,22 @@ std::string direction_in_words(const RobotModel& model, int dof) {
          " moves " + carried + " " + words[major][positive ? 1 : 0];
 }
 
+std::string inferred_soles(const RobotDescription& robot) {
+  std::vector<std::string> sizes;
+  bool of_inertia = false;
+  for (const auto& [side, sole] : robot.soles) {
+    if (sole.source == SoleSource::stated || sole.polygon.empty()) continue;
+    of_inertia = sole.source == SoleSource::inertias;
+    sizes.push_back(side + " " + sole.link + ", " + size_text(extent(sole)) + ", " +
+                    std::to_string(sole.polygon.size()) + " corners");
+  }
+  if (sizes.empty()) return "";
+  return std::string("soles inferred from ") +
+         (of_inertia ? "the masses and inertias of the feet, because the feet have no shapes: "
+                     : "the points of the feet that are at most 1 mm above the ground: ") +
+         text::join(sizes, "; ");
+}
+
 RobotGuess guess_robot(RobotDescription robot) {
   RobotGuess guess;
   guess.robot = std::move(robot);
@@ -1266,6 +1296,8 @@ RobotGuess guess_robot(RobotDescription robot) {
     }
     find_soles(guess);
   }
+  if (const std::string soles = inferred_soles(files); !soles.empty())
+    files.assumptions.push_back(soles);
   guess.placeholders = placeholder_limits(RobotModel(files));
   if (!files.postures.contains("home") && !find_home(guess)) {
     const RobotModel model(files);

@@ -23,16 +23,12 @@ struct PlaceholderLimits {
   std::vector<std::string> joints;
 };
 
-/// The beginning of the assumption about soles that no file states.
-inline constexpr const char* kInferredSoles = "soles inferred from ";
-
 /// A robot that guess_robot() has completed.
 struct RobotGuess {
   RobotDescription robot;
   std::string facing = "x";  ///< direction in the URDF's root link; `robot` itself faces x
   GuessReason facing_reason, sole_reason, home_reason, servo_reason;
-  std::string rounded_soles;      ///< what to do about rounded soles; empty if the soles are flat
-  bool soles_of_inertia = false;  ///< the soles are those of boxes that have the feet's inertias
+  std::string rounded_soles;  ///< what to do about rounded soles; empty if the soles are flat
   /// What to do about other links that stand on the ground; empty if there are none.
   std::string more_feet;
   std::vector<PlaceholderLimits> placeholders;

@@ -87,7 +87,8 @@ void read_not_negative(const JsonNode& node, const std::string& key, double& val
 void read_soles(const JsonNode& node, RobotDescription& robot) {
   node.only_keys({"left", "right"});
   for (const auto& [side, foot] : node.members()) {
-    foot.only_keys({"link", "origin", "rpy", "polygon", "stiffness", "damping_time"});
+    foot.only_keys(
+        {"link", "origin", "rpy", "polygon", "stiffness", "damping_time", "inferred_from"});
     SoleDescription sole;
     sole.link = foot.at("link").string();
     sole.frame = pose_of(foot);
@@ -95,6 +96,9 @@ void read_soles(const JsonNode& node, RobotDescription& robot) {
       sole.polygon.push_back(corner.vector2());
     read_not_negative(foot, "stiffness", sole.stiffness);
     read_not_negative(foot, "damping_time", sole.damping_time);
+    if (const auto from = foot.find("inferred_from"))
+      sole.source = from->one_of({"shapes", "inertias"}) == "shapes" ? SoleSource::shapes
+                                                                     : SoleSource::inertias;
     robot.soles[side] = sole;
   }
 }
