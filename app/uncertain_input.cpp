@@ -24,9 +24,15 @@ Study load_study(const Task& input, const std::string& file) {
   return read_study(standard);
 }
 
-std::string fit_to_plant(Study& study, const std::string& plant, bool stated) {
+std::string fit_to_plant(Study& study, const RobotModel& robot, const std::string& plant,
+                         bool stated) {
   if (plant != "mujoco") return "";
-  // The contacts of MuJoCo have their own stiffness and damping (mujoco_model.cpp).
+  // Soles whose softness no file states have the stiffness and the damping of MuJoCo's contacts
+  // (mujoco_ground.cpp).
+  const auto& soles = robot.description().soles;
+  if (std::all_of(soles.begin(), soles.end(),
+                  [](const auto& sole) { return sole.second.states_softness(); }))
+    return "";
   const auto unused = [](const UncertainQuantity& q) {
     return q.kind == UncertainKind::sole_stiffness || q.kind == UncertainKind::sole_damping;
   };
@@ -36,8 +42,9 @@ std::string fit_to_plant(Study& study, const std::string& plant, bool stated) {
     if (!unused(q)) continue;
     if (stated)
       fail(ErrorCode::bad_pattern, q.place,
-           "this quantity has no effect, because with --plant mujoco the soles have the "
-           "stiffness and the damping of MuJoCo's contacts. Remove the quantity");
+           "this quantity has no effect. With --plant mujoco, soles whose stiffness the robot's "
+           "sidecar does not state have the stiffness and the damping of MuJoCo's contacts. Remove "
+           "the quantity, or state the stiffness in the sidecar");
     names.push_back(q.name);
   }
   std::erase_if(all, unused);

@@ -14,9 +14,10 @@ namespace ayumi::app {
 /// read_study(), and Error(bad_pattern) if the file has no uncertainty.
 Study load_study(const Task& input, const std::string& file);
 
-/// If the user `stated` quantities that the plant of this name does not use, throws
+/// If the user `stated` quantities that the plant of this name does not use for this robot, throws
 /// Error(bad_pattern). Such quantities of a default uncertainty are left out, and the returned line
 /// says so; it is empty if nothing is left out.
-std::string fit_to_plant(Study& study, const std::string& plant, bool stated);
+std::string fit_to_plant(Study& study, const RobotModel& robot, const std::string& plant,
+                         bool stated);
 
 }  // namespace ayumi::app

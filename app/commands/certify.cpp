@@ -315,7 +315,7 @@ void certify_pattern(Context& context, CertifyCommand& options) {
   const Task input = load_pattern(context, options.pattern, options.input);
   Study study = load_study(input, options.study);
   const bool stated = !options.study.empty() || !input.pattern.uncertainty.empty();
-  const std::string left_out = fit_to_plant(study, options.choice.plant, stated);
+  const std::string left_out = fit_to_plant(study, input.robot, options.choice.plant, stated);
   SimulateOptions simulate = simulation_options(context, input, options.choice);
   const UncertainTask task(input.robot, input.series, study.uncertainty, simulate);
   if (!study.uncertainty.pushes.empty()) simulate.scenario.clear();

@@ -54,7 +54,7 @@ SimulatedCase simulate_case(const Context& context, const Task& input,
                             const std::optional<RunOutput>& output) {
   Study study = load_study(input, options.study);
   const bool stated = !options.study.empty() || !input.pattern.uncertainty.empty();
-  context.print(fit_to_plant(study, options.choice.plant, stated));
+  context.print(fit_to_plant(study, input.robot, options.choice.plant, stated));
   const UncertainTask task(input.robot, input.series, study.uncertainty,
                            simulation_options(context, input, options.choice));
   const CaseNumbers numbers = task.numbers(context.seed, options.number);

@@ -101,6 +101,20 @@ TEST(Compare, NamesSizeTimeAndLagOfADifference) {
   EXPECT_NEAR(found.joints[static_cast<size_t>(elbow)].mean, 0.5 * kDegree, 0.01 * kDegree);
 }
 
+// In an earlier version, the lag was right only for curves of the same amplitude: 100 ms at twice
+// the amplitude became 142 ms, and at five times 0 ms.
+TEST(Compare, TheLagDoesNotDependOnTheAmplitude) {
+  for (const double amplitude : {0.5, 1.0, 3.0})
+    for (const Index late : {20, 100, 200}) {
+      SensorTable loads = loads_from(0, late);
+      loads.foot_load *= amplitude;
+      const Comparison found = compared(angles_from(0), loads, {.shift = 0});
+      for (const size_t foot : {0u, 1u})
+        EXPECT_NEAR(found.loads[foot].lag, 1e-3 * static_cast<double>(late), 1e-3)
+            << found.loads[foot].name << " times " << amplitude;
+    }
+}
+
 TEST(Compare, LandingsAndLoadsOfTheFeetComeLate) {
   const Comparison found = compared(angles_from(0), loads_from(0, 9), {.shift = 0});
   ASSERT_EQ(found.loads.size(), 3u);

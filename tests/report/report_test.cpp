@@ -134,6 +134,11 @@ TEST(Report, SaysWhichLimitsAreNotStatedAndHowSoftTheSolesAre) {
   EXPECT_NE(
       make_report(made.model, made.input).html.find("The plant mujoco does not use these values"),
       std::string::npos);
+  RobotDescription stated = made.model.description();
+  for (auto& [side, sole] : stated.soles) sole.stiffness = 1e5;
+  EXPECT_NE(
+      make_report(RobotModel(stated), made.input).html.find("along the normal of the sole only"),
+      std::string::npos);
 }
 
 // Lengths are in mm and angles in deg wherever they occur, with three digits.

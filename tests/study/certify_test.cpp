@@ -72,6 +72,9 @@ TEST(UncertainTask, EveryQuantityChangesWhatItNames) {
   EXPECT_NEAR(heavy.model.mass(), nominal.mass() + 0.1 * before.mass, 1e-12);
   EXPECT_NEAR(link(heavy).about_com(0, 0), 1.1 * before.about_com(0, 0), 1e-12);
   EXPECT_EQ(heavy.model.sole(Side::left).stiffness, nominal.sole(Side::left).stiffness);
+  // MuJoCo uses the softness of soles only if a file states it, so this must not become a
+  // statement.
+  EXPECT_FALSE(heavy.model.description().soles.at("left").states_softness());
   const RobotUnit moved = unit_of(fixed("cog", "0.004", on_foot + R"(, "axis": "y")"), 0.004);
   EXPECT_NEAR(link(moved).com.y(), before.com.y() + 0.004, 1e-12);
   const RobotUnit slow = unit_of(fixed("inertia", "1.2", on_foot), 1.2);

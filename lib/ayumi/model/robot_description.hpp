@@ -155,7 +155,11 @@ struct SoleDescription {
   /// Stiffness of the whole sole on the ground [N/m]; 0 if it is derived from the mass.
   double stiffness = 0;
   double damping_time = 0;  ///< ratio of contact damping to stiffness [s]; 0 for the default
+  /// Whether stiffness and damping time are not those of a file but were derived from the mass.
+  bool softness_derived = false;
   SoleSource source = SoleSource::stated;
+
+  bool states_softness() const { return stiffness > 0 && !softness_derived; }
 };
 
 /// How recorded readings of a robot's load cells become forces. Polynomials begin with the highest

@@ -332,6 +332,7 @@ RobotUnit UncertainTask::unit(const std::vector<double>& drawn) const {
   for (const Side side : {Side::left, Side::right}) {
     // Values that the model derived from its own mass do not change when the mass changes.
     SoleDescription& sole = d.soles.at(side == Side::left ? "left" : "right");
+    sole.softness_derived = !sole.states_softness();
     sole.stiffness = model_->sole(side).stiffness;
     sole.damping_time = model_->sole(side).damping_time;
   }

@@ -33,7 +33,7 @@ struct MujocoPlant::Impl {
     // corners.
     std::erase_if(points, [](const ContactPoint& point) { return point.rim > 0; });
     for (const auto& [side, sole] : robot.description().soles)
-      soft_side[side == "right"] = sole.stiffness > 0;
+      soft_side[side == "right"] = sole.states_softness();
     build(false);
   }
   Impl(const Impl& o)
