@@ -41,14 +41,16 @@ void MujocoPlant::Impl::set_friction() {
   }
 }
 
-const ContactPoint& MujocoPlant::Impl::point_of_contact(const mjContact& contact) const {
+const ContactPoint* MujocoPlant::Impl::point_of_contact(const mjContact& contact) const {
   const int first = point_of[static_cast<size_t>(contact.geom1)],
             second = point_of[static_cast<size_t>(contact.geom2)],
             number = second != -1 ? second : first;
-  if (number >= 0) return points[static_cast<size_t>(number)];
+  if (number >= 0) return &points[static_cast<size_t>(number)];
   // A plate is the whole sole of a foot, whose points are equally stiff.
-  return *std::find_if(points.begin(), points.end(),
-                       [&](const ContactPoint& point) { return point.side == -2 - number; });
+  const auto found = std::find_if(points.begin(), points.end(), [&](const ContactPoint& point) {
+    return point.side == -2 - number;
+  });
+  return found != points.end() ? &*found : nullptr;
 }
 
 // Soles whose stiffness the robot's file states are as soft in MuJoCo; other contacts have MuJoCo's
@@ -64,10 +66,10 @@ void MujocoPlant::Impl::soften_contacts(double h) {
     mjContact& contact = d->contact[i];
     const int row = contact.efc_address;
     if (row < 0) continue;
-    const ContactPoint& point = point_of_contact(contact);
-    if (point.side < 0 || !soft_side[static_cast<size_t>(point.side)]) continue;
-    const double time = h + point.damping_time;
-    d->efc_R[row] = 1 / (h * point.stiffness * time);
+    const ContactPoint* const point = point_of_contact(contact);
+    if (!point || point->side < 0 || !soft_side[static_cast<size_t>(point->side)]) continue;
+    const double time = h + point->damping_time;
+    d->efc_R[row] = 1 / (h * point->stiffness * time);
     d->efc_D[row] = 1 / d->efc_R[row];
     d->efc_KBIP[4 * row + 1] = 1 / h;
     d->efc_aref[row] = -(d->efc_vel[row] + (d->efc_pos[row] - d->efc_margin[row]) / time) / h;

@@ -77,7 +77,7 @@ struct MujocoPlant::Impl {
   void take_bumps(const std::vector<RisingDisc>& now);
   void place_floor();
   void set_friction();
-  const ContactPoint& point_of_contact(const mjContact& contact) const;
+  const ContactPoint* point_of_contact(const mjContact& contact) const;
   void soften_contacts(double h);
   void move_ground(double dt);
   void apply(const ExternalWrench& w);
