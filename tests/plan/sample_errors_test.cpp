@@ -121,8 +121,8 @@ TEST(SampleErrors, FootOutOfReach) {
                          "Lower the COG height"});
 }
 
-// The COG is half a metre in front of feet that stand: a shorter stride or another height of the COG
-// would not help.
+// The COG is half a metre in front of feet that stand: a shorter stride or another height of the
+// COG would not help.
 TEST(SampleErrors, CogBesideTheFeet) {
   const std::string message = message_of([](Pattern& p) {
     p.phases.resize(1);

@@ -42,9 +42,11 @@ TEST(ViipGoals, DisplacementsBeyondFeetOrLegsAreRefused) {
   for (const Case& c :
        {Case{{0.2, 0, 0}, "151.0 mm outside the support of the feet"},
         Case{{-0.2, 0, 0}, "outside the support of the feet"},
-        Case{{0, 0.06, 0}, "l_ankle_roll is at its limit there. In this direction, a displacement of 0.0, 51"},
+        Case{{0, 0.06, 0},
+             "l_ankle_roll is at its limit there. In this direction, a displacement of 0.0, 51"},
         Case{{0, 0, 0.05}, "the legs bring the COG no closer than 28.1 mm"},
-        Case{{0, 0, -0.1}, "at its limit there. In this direction, a displacement of 0.0, 0.0, -66"},
+        Case{{0, 0, -0.1},
+             "at its limit there. In this direction, a displacement of 0.0, 0.0, -66"},
         Case{{0, 0, -5}, "above the ground"},
         Case{{std::numeric_limits<double>::quiet_NaN(), 0, 0}, "not a finite number"}})
     EXPECT_NE(refusal(CogGoal{c.displacement}).find(c.words), std::string::npos)
