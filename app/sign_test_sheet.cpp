@@ -102,8 +102,9 @@ std::string sign_test_words(const RobotModel& model, const std::vector<SignTest>
       bent += (bent.empty() ? "" : ", ") + dof.name + " (" + in_units(dof, start[test.dof]) + ")";
   }
   if (bent.empty())
-    return "Every test begins and ends with all joints at 0. A target of 0 is an encoder reading "
-           "of 0, so a joint with a wrong sign does not jump when a test begins.";
+    return "Every test begins and ends with all joints at 0. A target of 0 means the encoder "
+           "count 0, whatever the sign of the joint is. So a joint with a wrong sign does not jump "
+           "when a test begins.";
   return "Caution: these joints do not begin at 0: " + bent +
          ". When a test begins, each of these joints whose sign is wrong jumps to the opposite "
          "angle.";

@@ -480,7 +480,7 @@ std::vector<std::string> refusals(const ExportOptions& options, const Source& so
 
 std::string words_of(const TableServo& servo) {
   if (servo.content == "ideal")
-    return "the table contains joint angles, not servo targets, as with --servo ideal. It was "
+    return "as with --servo ideal, the table contains joint angles and no servo targets. It was "
            "judged by the limits of profile " +
            servo.profile;
   const bool one = servo.lag.find(' ') == std::string::npos;

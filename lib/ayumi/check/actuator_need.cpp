@@ -134,9 +134,10 @@ ActuatorNeed actuator_need(const RobotModel& model, const std::vector<KeyedGoal>
     ActuatorNeed need =
         need_of(model, goal.motion, options, check_consistency(model, goal.motion, options));
     if (need.text.empty()) continue;
-    need.text = goal.place + ": " + need.text +
-                ". The time beside a joint is counted from the beginning of the motion that Ayumi "
-                "planned for this goal, not from the beginning of the pattern";
+    need.text =
+        goal.place + ": " + need.text +
+        ". In this message, the times at joints are counted from the beginning of the motion "
+        "that Ayumi planned for this goal, not from the beginning of the pattern";
     return need;
   }
   return {};

@@ -89,24 +89,23 @@ std::string position_infeasibility(const Finding& f, double violation) {
 }  // namespace
 
 const Limit& joint_position_limit() {
-  static const Limit limit = {
-      .findings = {{.kind = FindingKind::joint_position,
-                    .unit = "rad",
-                    .tolerance = kPositionTolerance,
-                    .meaning = "angle by which a joint is beyond its limit",
-                    .figure = {.key = "max_joint_position_ratio",
-                               .label = "largest joint angle",
-                               .unit = "% of half the range",
-                               .scale = 100,
-                               .share_name = "position from the middle of the range",
-                               .line = 6},
-                    .repair = {.is_of_one_joint = true},
-                    .finding_unit = position_unit,
-                    .place = joint_place,
-                    .advice = position_advice,
-                    .infeasibility = position_infeasibility}},
-      .judge_sample = judge_joint_positions,
-      .place_rows = place_position_rows};
+  static const Limit limit = {.findings = {{.kind = FindingKind::joint_position,
+                                            .unit = "rad",
+                                            .tolerance = kPositionTolerance,
+                                            .meaning = "angle by which a joint is beyond its limit",
+                                            .figure = {.key = "max_joint_position_ratio",
+                                                       .label = "largest joint angle",
+                                                       .unit = "% of half the range",
+                                                       .scale = 100,
+                                                       .share_name = "joint position",
+                                                       .line = 6},
+                                            .repair = {.is_of_one_joint = true},
+                                            .finding_unit = position_unit,
+                                            .place = joint_place,
+                                            .advice = position_advice,
+                                            .infeasibility = position_infeasibility}},
+                              .judge_sample = judge_joint_positions,
+                              .place_rows = place_position_rows};
   return limit;
 }
 

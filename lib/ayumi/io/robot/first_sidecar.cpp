@@ -648,7 +648,9 @@ FirstSidecar first_sidecar(const std::string& robot, const std::filesystem::path
   if (!stated.sidecar_file.empty())
     fail(ErrorCode::usage, {robot},
          "this robot already has the sidecar " + stated.sidecar_file +
-             "; to write a new first sidecar, name the URDF of the robot in place of the robot");
+             ". To write a new sidecar from the beginning, give the URDF file of the robot in "
+             "place of its "
+             "name");
   namespace fs = std::filesystem;
   const fs::path urdf = fs::weakly_canonical(fs::absolute(stated.urdf_file));
   const std::string urdf_as_written = seen_from(folder, urdf);
