@@ -252,7 +252,7 @@ const std::array<Job, 8> kJobs = {{
     {"laws", "other control laws, with a push and noise", laws_text,
      "f6b184faadf56210c25f6de3264aea62f94b519634437e5907fea53849e40f12"},
     {"check", "findings and likely causes of patterns with mistakes", check_text,
-     "0053ee9c99d3790e04aa3bd0726702f0bca268d434955f24985aac01b3f39877"},
+     "b888490c81b6265e25d4cffd6123ed58dd2b740fb4f0ab6d1942dcd8f63aadf3"},
     {"repair", "a repaired walk", repair_text,
      "1fc3abdbbca1ba9965f8162b7812820465c6c5e4e11cb991a59f00eb1a1f8b86"},
     {"push", "limits of pushes", push_text,

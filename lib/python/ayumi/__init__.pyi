@@ -310,7 +310,7 @@ class Import:
         """What was assumed, left out or changed, one sentence each."""
 
     def write(self, path: Union[str, PathLike[str]]) -> None:
-        """Writes the pattern, its table beside it, and, for formats whose files can be exported unchanged, a copy of the file; all of them or none."""
+        """Writes the pattern and its table. For formats whose files can be exported unchanged, it also writes a copy of the file. It writes all of these files, or none."""
 
 class Interrupted(Exception):
     """Long work was stopped because its progress callback returned False."""
@@ -646,7 +646,7 @@ class Robot:
         """Names of the actuator profiles."""
 
     def actuators(self, profile: str = '') -> Actuators:
-        """Limits of the motors of a profile; '' is the default one."""
+        """Limits of the motors of a profile; '' means the default profile."""
 
     def posture(self, name: str = 'home') -> NDArray[numpy.float64]:
         """Joint angles of a named posture [rad, m], shape (dof,)."""
@@ -872,7 +872,7 @@ class Table:
         """The text of a HOAP sequence: encoder counts of every motor."""
 
     def write(self, path: Union[str, PathLike[str]]) -> None:
-        """Writes CSV, or JSON where the name ends in .json; whole or not at all."""
+        """Writes the table as CSV, or as JSON if the name ends in .json. The file is written whole or not at all."""
 
     def resampled(self, dt: float) -> Table:
         """The table at another rate, interpolated linearly between its rows; `dt` in s."""
@@ -1029,28 +1029,28 @@ def data_folder(name: str) -> Path:
     """Folder of the bundled data: 'robots', 'patterns' or 'examples'."""
 
 def fastest_local_pace(task: Task, *, table: str = 'retimed.csv', margin: Optional[float] = None, keep_pauses: bool = False, progress: Optional[Callable[[str, float, str], Any]] = None) -> LocalPace:
-    """The fastest timing along the motion: the motion slows down only where a limit binds. The result names its table `table`; `margin` is an upper limit [m] of the distance that the ZMP has to keep from the edge of the support; with `keep_pauses`, spans in which nothing moves keep their length."""
+    """The fastest timing along the motion: the motion slows down only where a limit binds. `table` is the name of the table in the result. `margin` [m] is a distance from the edge of the support that is enough for the ZMP. With `keep_pauses`, time spans in which nothing moves keep their duration."""
 
 def fastest_pace(task: Task, *, resolution: float = 0.002, progress: Optional[Callable[[str, float, str], Any]] = None) -> Pace:
     """The fastest uniform time scaling of the pattern that passes the check."""
 
 def gains(robot: Robot, *, poles: Optional[list[complex]] = None, absorb: Optional[float] = None, return_time: Optional[float] = None, zmp_filter: Optional[float] = None, forget: Optional[float] = None, set: dict[str, float] = {}, latency: Optional[float] = None) -> GainStudy:
-    """Gains of DTAD: two `poles` of the COG [1/s], the share of a ZMP error that is absorbed at once, the times [s] of the return to the command and of the filter of the ZMP, and the time [s] until a lasting offset of the ZMP is accepted; `set` gives gains by name, and `latency` [s] is the latency of the sensors."""
+    """Gains of DTAD. They follow from two `poles` of the COG [1/s], the share of a ZMP error that is absorbed at once, the times [s] of the return to the command and of the filter of the ZMP, and the time [s] until a lasting offset of the ZMP is accepted. `set` gives gains by name. `latency` [s] is the latency of the sensors."""
 
 def identify(robot: Robot, command: Union[Union[str, PathLike[str]], tuple[float, NDArray[numpy.float64]]], measured: Union[Union[str, PathLike[str]], tuple[float, NDArray[numpy.float64]]], *, loads: Optional[Union[str, PathLike[str]]] = None, measured_at: str = 'encoder', per_type: bool = False, stand: str = 'auto', rate: float = 0.0, degrees: bool = False, longest_lag: float = 0.0, threads: int = 0, progress: Optional[Callable[[str, float, str], Any]] = None) -> Identification:
-    """The servo constants with which the simulated servos come nearest to what was measured. `command` and `measured` are files, or (dt, angles) with the time between two rows [s] and an array of angles [rad, m], shape (n, dof). `command` are angles of the encoders, as the robot received them; `measured_at`: 'encoder' if its encoders measured the angles, 'joint' if instruments at the joints did. Only these show the offsets of the encoders. `loads` is a file of load cells; `per_type`: one set for all joints of one motor type; `stand`: 'feet', 'fixed' (the root is held upright) or 'auto'; `rate` [1/s] and `degrees` apply to files that do not state them; `longest_lag` [s]: a recording whose angles are later than this is refused (0: 30 ms or twice the lag of the slowest servo, whichever is larger)."""
+    """The servo constants with which the simulated servos come nearest to what was measured. `command` and `measured` are files, or (dt, angles) with the time between two rows [s] and an array of angles [rad, m], shape (n, dof). `command` are angles of the encoders, as the robot received them. `measured_at` is 'encoder' if the encoders of the robot measured the angles, or 'joint' if instruments at the joints measured them; only such instruments show the offsets of the encoders. `loads` is a file of load cells. With `per_type`, all joints of one motor type get the same constants. `stand` is 'feet', 'fixed' (the root is held upright) or 'auto'. `rate` [1/s] and `degrees` apply to files that do not state their rate or their unit. A recording whose angles are later than `longest_lag` [s] is refused; 0 means 30 ms or twice the lag of the slowest servo, whichever is larger."""
 
 def import_motion(path: Union[str, PathLike[str]], robot: Robot, *, format: str = '', rate: float = 0.0, degrees: bool = False, order: bool = False, joints: list[str] = [], motion: str = '', commands: bool = False, measured_at: str = '', smooth: Optional[float] = None, ground: bool = False, ramp: float = 0.0, contact_height: Optional[float] = None, contact_speed: Optional[float] = None, contact_load: Optional[float] = None) -> Import:
-    """Reads a motion of another program or robot, as `ayumi import` does. The format follows from the content unless `format` names one of motion_formats(). `rate` [1/s]: rows per second, if the rows have no times; `degrees`: angles of a file that does not state their unit are in degrees; `order`: the columns are the joints of the robot, in the order of the robot; `joints`: names of the joint columns; `motion`: name or number of the motion, if the file has several; `commands`: the angles are servo targets; `measured_at`: 'encoder' for angles of the encoders of the robot, to which its offsets are added, 'joint' for angles of the joints, '' if the format decides; `smooth`: largest change for smoothing [deg]; `ground`: the soles that carry the robot are put on the ground; `ramp`: time from rest to the speed of a recording that was cut [s]. A sole carries the robot when it is at most `contact_height` [m] above the lowest one, slower than `contact_speed` [m/s], and the motion of the COG needs at least `contact_load` times the weight as ground force."""
+    """Reads a motion of another program or robot, as `ayumi import` does. `format` is one of motion_formats(); without it, the format follows from the content. `rate` [1/s] is the number of rows per second, for rows without times. With `degrees`, angles without a unit in the file are in degrees. With `order`, the columns are the joints of the robot, in the order of the robot. `joints` are the names of the joint columns. `motion` is the name or the number of the motion in a file with several motions. With `commands`, the angles are servo targets. `measured_at` is 'encoder' for angles of the encoders, to which the offsets of the robot are added, 'joint' for angles of the joints, or '' if the format decides. `smooth` is the largest change of an angle by smoothing [deg]. With `ground`, the soles that carry the robot are put on the ground. `ramp` is the time between rest and the speed of a recording that begins or ends in motion [s]. A sole carries the robot when it is at most `contact_height` [m] above the lowest one, slower than `contact_speed` [m/s], and the motion of the COG needs at least `contact_load` times the weight as ground force."""
 
 def jump_pattern(robot: Robot, *, height: Optional[float] = None, stoop: Optional[float] = None, cog_height: Optional[float] = None, forward: Optional[float] = None, times: Optional[int] = None) -> Pattern:
     """Stoop, lift-off, flight, touchdown and settling; all lengths in m."""
 
 def load_robot(name: str, path: list[Union[str, PathLike[str]]] = [], meshes: bool = True) -> Robot:
-    """The robot of this name, folder, sidecar or URDF. `meshes`: also read the meshes, which only pictures need."""
+    """The robot of this name, folder, sidecar or URDF. With `meshes`, the meshes are read too; only pictures need them."""
 
 def load_task(pattern: Union[Pattern, Union[str, PathLike[str]]], *, set: dict[str, float] = {}, profile: str = '', robot: str = '', path: list[Union[str, PathLike[str]]] = [], meshes: bool = True, progress: Optional[Callable[[str, float, str], Any]] = None) -> Task:
-    """Reads a pattern (a file, or a Pattern) and its robot, and samples the motion. `set` gives values to declared parameters of a file, `robot` is a name or path in place of the pattern's, `path` lists folders with robots. `meshes`: also read the meshes, which only pictures need."""
+    """Reads a pattern (a file, or a Pattern) and its robot, and samples the motion. `set` gives values to parameters that a file declares. `robot` is the name or path of a robot that replaces the robot of the pattern. `path` lists folders with robots. With `meshes`, the meshes are read too; only pictures need them."""
 
 def loci(robot: Robot, logs: dict[str, Log], *, title: str = '', scale: float = 1.5) -> bytes:
     """COG, ZMP and vertical force of runs against time as the bytes of a PNG file. `logs`: runs by the label that the legend has."""
@@ -1059,7 +1059,7 @@ def loci_svg(robot: Robot, logs: dict[str, Log], *, title: str = '') -> str:
     """The same plot as loci(), as the text of an SVG file."""
 
 def make_safe(task: Task, table: Table, log: Optional[Log] = None, *, ramp: float = 2.0, hold: float = 0.5, start: str = 'home') -> SafeTable:
-    """Adds an approach of `ramp` s from the posture `start` before a table and a hold of `hold` s after it, and judges what the servos would receive; with a log, also the torques of that run."""
+    """Adds an approach of `ramp` s from the posture `start` before a table and a hold of `hold` s after it, and judges what the servos would receive. With a log, it also judges the torques of that run."""
 
 def mirrored(robot: Robot, pattern: Pattern) -> Pattern:
     """The pattern with left and right exchanged."""
@@ -1077,7 +1077,7 @@ def plan(task: Task) -> Log:
     """The planned motion in the form of a log, without a simulation: posture, COG, ZMP, forces on the feet, and the motor torques that the full model needs. Pictures and plots show it like a run; `outcome`, `hash` and `events` have no meaning for such a motion."""
 
 def push(task: Task, *, controllers: list[str] = [], gains: dict[str, float] = {}, times: list[float] = [], directions: int = 8, step: float = 0.06, cap: float = 2.4, replicas: int = 2, duration: float = 0.02, seed: int = 1, threads: int = 0, progress: Optional[Callable[[str, float, str], Any]] = None) -> PushStudy:
-    """The largest push that the robot survives, by phase of the gait and direction, in open loop and with each controller (the controller of the pattern when none is named). `times` [s] in place of the default phases; `step`: resolution of the search, and `cap`: largest push tried, both as multiples of the capture bound; `replicas`: number of small variations of every push, all of which the robot must survive; `duration` of a push [s]; `threads`: 0 for all; the results do not depend on this number."""
+    """The largest push that the robot survives, by phase of the gait and direction, in open loop and with each controller (the controller of the pattern when none is named). `times` [s] replace the default phases. `step` is the resolution of the search, and `cap` is the largest push tried, both as multiples of the capture bound. `replicas` is the number of small variations of every push; the robot must survive all of them. `duration` is the duration of a push [s]. `threads` is the number of threads, and 0 means all; the results do not depend on this number."""
 
 def read_log(path: Union[str, PathLike[str]], name: str = '') -> Log:
     """The log of a file or of the folder that `ayumi run` wrote: 'open_loop', 'closed_loop' (the default) or 'undisturbed'."""
@@ -1089,13 +1089,13 @@ def read_table(path: Union[str, PathLike[str]]) -> Table:
     """Reads a table that Ayumi wrote, CSV or JSON."""
 
 def repair(task: Task, *, lock_joints: list[str] = [], lock_feet: list[str] = [], lock_windows: list[tuple[float, float]] = [], weights: dict[str, float] = {}, trust: Optional[str] = None, safety: Optional[float] = None, zmp_margin: Optional[float] = None, max_iterations: Optional[int] = None, progress: Optional[Callable[[str, float, str], Any]] = None) -> Repair:
-    """The nearest consistent motion, which bears the payloads of the scenario. Locked joints, feet ('left', 'right') and windows (begin, end) [s] do not move; `weights` are factors on the cost of a joint; `trust` is 'posture', 'cog' or 'zmp'; `zmp_margin` [m] is the wanted distance of the ZMP from the edge. An argument that is not given has the value in the pattern."""
+    """The nearest consistent motion, which bears the payloads of the scenario. Locked joints, feet ('left', 'right') and windows (begin, end) [s] do not move. `weights` are factors on the cost of a change of a joint. `trust` is 'posture', 'cog' or 'zmp'. `zmp_margin` [m] is the wanted distance of the ZMP from the edge of the support. An argument that is not given has the value in the pattern."""
 
 def retimed(robot: Robot, pattern: Pattern, scale: float) -> Pattern:
     """The pattern with all times multiplied by `scale`."""
 
 def robot_picture(robot: Robot, *, posture: str = 'home', theta: Optional[NDArray[numpy.float64]] = None, view: str = 'iso', marks: bool = True) -> bytes:
-    """The robot on the ground, in a named posture or at the joint angles `theta` [rad, m], shape (dof,), as the bytes of a PNG file. `marks`: with the outlines of the soles, the axes of the joints and an arrow in the direction that the robot faces."""
+    """The robot on the ground, in a named posture or at the joint angles `theta` [rad, m], shape (dof,), as the bytes of a PNG file. With `marks`, the picture shows the outlines of the soles, the axes of the joints and an arrow in the direction that the robot faces."""
 
 def robots(path: list[Union[str, PathLike[str]]] = []) -> list[str]:
     """Names of the robots in the folders of `path` and of the bundled ones."""
@@ -1104,7 +1104,7 @@ def sample(pattern: Pattern, robot: Robot, *, profile: str = '', progress: Optio
     """Samples a pattern for a robot that was loaded."""
 
 def simulate(task: Task, *, controller: Optional[str] = None, gains: dict[str, float] = {}, scenario: Optional[Union[bool, Union[str, PathLike[str]]]] = None, noise: bool = False, true_state: bool = False, substeps: int = 1, seed: int = 1, plant: Union[str, Callable[..., Any]] = 'ayumi', targets: Optional[Callable[..., Any]] = None, allow_unstable: bool = False, progress: Optional[Callable[[str, float, str], Any]] = None) -> Log:
-    """The closed loop of plant, sensors and controller. `controller`: a name of controllers(), or None for the controller of the pattern; `gains`: values by name. `scenario`: False for no disturbances, or a pattern file whose scenario replaces that of the pattern. `noise`: sensors with noise, bias and latency. `true_state`: the controller gets the true state. `substeps`: steps of the integrator per tick. `plant`: 'ayumi', 'mujoco', or a function (robot, profile, world) that returns an object with `state`, `set_state(state)` and `step(targets, input, dt)`, as Plant has them. `targets`: a function (t, estimate, plan, targets) that returns the servo targets as angles of the joints [rad, m], shape (dof,), in place of those of the controller; with controller='none' it is the whole controller. A plant or a controller in Python is called in every tick and makes the run several times slower. `progress`: a function (stage, fraction, detail); the run stops when it returns False."""
+    """Simulates the closed loop of plant, sensors and controller. `controller` is a name of controllers(), or None for the controller of the pattern. `gains` are values of gains by name. `scenario` is False for no disturbances, or a pattern file whose scenario replaces the scenario of the pattern. With `noise`, the sensors have noise, bias and latency. With `true_state`, the controller gets the true state. `substeps` is the number of steps of the integrator in a tick. `plant` is 'ayumi', 'mujoco', or a function (robot, profile, world) that returns an object with `state`, `set_state(state)` and `step(targets, input, dt)`, as Plant has them. `targets` is a function (t, estimate, plan, targets). It returns the servo targets as angles of the joints [rad, m], shape (dof,), which replace the targets of the controller; with controller='none', the function is the whole controller. A plant or a controller in Python is called in every tick and makes the run several times slower. `progress` is a function (stage, fraction, detail); the run stops if this function returns False."""
 
 def squat_pattern(robot: Robot, *, depth: Optional[float] = None, period: Optional[float] = None, hold: Optional[float] = None, cycles: Optional[int] = None) -> Pattern:
     """The COG moves down by `depth` m and up again; `hold` s at the lowest point."""
@@ -1125,10 +1125,10 @@ def table(task: Task, log: Optional[Log] = None, *, content: str = 'lead') -> Ta
     """The table of a run, or of the pattern itself if no log is given. `content`: 'ideal' (the posture), 'lead' (ahead of the posture by the lag of the servos) or 'lead+sag'."""
 
 def tune(task: Task, *, start: dict[str, float] = {}, times: list[float] = [], directions: int = 4, level: float = 0.9, gains: Optional[list[str]] = None, rounds: int = 3, seed: int = 1, threads: int = 0, progress: Optional[Callable[[str, float, str], Any]] = None) -> Tuning:
-    """Searches for better gains of DTAD. `start`: gains to begin with; `times` of the pushes [s]; `level` of a push in capture bounds; `gains`: names of the gains that are changed."""
+    """Searches for better gains of DTAD. `start` are the gains to begin with, and `times` are the times of the pushes [s]. `level` is the size of a push as a multiple of the capture bound. `gains` are the names of the gains that are changed."""
 
 def walk_pattern(robot: Robot, *, steps: Optional[int] = None, stride: Optional[float] = None, period: Optional[float] = None, double_support: Optional[float] = None, lift: Optional[float] = None, cog_height: Optional[float] = None, turn: Optional[float] = None, side: Optional[float] = None, rise: Optional[float] = None) -> Pattern:
-    """A walk from rest to rest. stride, lift, cog_height, side and rise (of a stair) in m, period in s, double_support as a share of the period, turn in rad per step, left positive. Arguments that are not given follow from the size of the robot."""
+    """A walk from rest to rest. stride, lift, cog_height, side and rise (of a stair) are in m, and period is in s. double_support is a share of the period. turn is in rad per step; left is positive. Arguments that are not given follow from the size of the robot."""
 
 def write_clip(robot: Robot, log: Log, path: Union[str, PathLike[str]], *, width: int = 1280, height: int = 720, view: str = 'iso', fps: float = 30.0, speed: float = 1.0, title: str = '', threads: int = 1, progress: Optional[Callable[[str, float, str], Any]] = None) -> int:
     """Writes the run as a film (.mp4, .webm, .gif); needs the program ffmpeg. Returns the number of frames."""
