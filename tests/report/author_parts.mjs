@@ -472,7 +472,7 @@ test("the last key of a block before is not the beginning of the next one", () =
 test("the first key of a leg joint takes the legs from the solver, and the page says so", () => {
   const joints = [{ name: "l_knee", leg: true }, { name: "r_knee", leg: true }, { name: "l_elbow", leg: false }];
   const state = { joints, tracks: [{ name: "zmp", kind: "zmp", keys: [] }, { name: "joint l_elbow", kind: "joint", joint: "l_elbow", keys: [] }] };
-  assert.match(edits.legWords(state, "l_knee"), /^l_knee is a joint of a leg.*no longer solved/);
+  assert.match(edits.legWords(state, "l_knee"), /^l_knee is a joint of a leg.*no longer computed/);
   assert.equal(edits.legWords(state, "l_elbow"), "");
   const keyed = { joints, tracks: [...state.tracks, { name: "joint r_knee", kind: "joint", joint: "r_knee", keys: [] }] };
   assert.equal(edits.legWords(keyed, "l_knee"), "", "the legs follow their keys already");
