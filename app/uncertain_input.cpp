@@ -29,10 +29,7 @@ std::string fit_to_plant(Study& study, const RobotModel& robot, const std::strin
   if (plant != "mujoco") return "";
   // Soles whose softness no file states have the stiffness and the damping of MuJoCo's contacts
   // (mujoco_ground.cpp).
-  const auto& soles = robot.description().soles;
-  if (std::all_of(soles.begin(), soles.end(),
-                  [](const auto& sole) { return sole.second.states_softness(); }))
-    return "";
+  if (robot.description().states_softness_of_soles()) return "";
   const auto unused = [](const UncertainQuantity& q) {
     return q.kind == UncertainKind::sole_stiffness || q.kind == UncertainKind::sole_damping;
   };

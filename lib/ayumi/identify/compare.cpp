@@ -71,16 +71,6 @@ constexpr int kLagRounds = 30;
 // Change of the lag at which it is at rest [s]. Chosen: a tenth of the 0.1 ms that are printed.
 constexpr double kLagAtRest = 1e-5;
 
-double interpolated(const Eigen::Ref<const VectorXd>& values, double dt, double t) {
-  const double at = t / dt;
-  const Index last = values.size() - 1;
-  if (at <= 0) return values[0];
-  const auto k = static_cast<Index>(at);
-  if (k >= last) return values[last];
-  const double u = at - static_cast<double>(k);
-  return (1 - u) * values[k] + u * values[k + 1];
-}
-
 AngleTable angles_of(const RobotModel& model, const SimulationLog& log) {
   AngleTable table;
   table.dt = log.dt;

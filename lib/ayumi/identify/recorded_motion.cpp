@@ -23,21 +23,26 @@ double difference_of_clocks(std::optional<double> first, double first_lasts,
 }
 
 /// The rows of `values`, which are `dt` [s] apart and begin `after` [s] after the wanted rows.
-/// Before the first and after the last row, that row is used.
 MatrixXd at_rows(const MatrixXd& values, double dt, double after, Index rows, double wanted_dt) {
   MatrixXd result(rows, values.cols());
-  const Index last = values.rows() - 1;
-  for (Index k = 0; k < rows; ++k) {
-    const double at = std::clamp((wanted_dt * static_cast<double>(k) - after) / dt, 0.0,
-                                 static_cast<double>(last));
-    const Index row = std::min(last, static_cast<Index>(at)), next = std::min(last, row + 1);
-    const double u = at - static_cast<double>(row);
-    result.row(k) = (1 - u) * values.row(row) + u * values.row(next);
-  }
+  for (Index column = 0; column < values.cols(); ++column)
+    for (Index k = 0; k < rows; ++k)
+      result(k, column) =
+          interpolated(values.col(column), dt, wanted_dt * static_cast<double>(k) - after);
   return result;
 }
 
 }  // namespace
+
+double interpolated(const Eigen::Ref<const Eigen::VectorXd>& values, double dt, double t) {
+  const double at = t / dt;
+  const Index last = values.size() - 1;
+  if (at <= 0) return values[0];
+  const auto k = static_cast<Index>(at);
+  if (k >= last) return values[last];
+  const double u = at - static_cast<double>(k);
+  return (1 - u) * values[k] + u * values[k + 1];
+}
 
 double first_row_after(const AngleTable& angles, const SensorTable& sensors) {
   return difference_of_clocks(angles.clock_start, angles.duration(), sensors.clock_start,

@@ -55,6 +55,10 @@ struct SensorTable {
   }
 };
 
+/// The value at the time `t` [s] of rows that begin at 0 and are `dt` [s] apart, linearly between
+/// two rows. Before the first and after the last row, it is the value of that row.
+double interpolated(const Eigen::Ref<const Eigen::VectorXd>& values, double dt, double t);
+
 /// The time from the first row of `angles` to the first row of `sensors` [s]. If both files have a
 /// time column and these times overlap for at least half of the shorter file, one clock measured
 /// them, and its times count. Otherwise both are taken to begin together, and the result is 0.

@@ -261,6 +261,12 @@ struct RobotDescription {
   /// Meshes that were left out, each with its link, in words.
   std::vector<std::string> missing_meshes;
   std::vector<std::string> assumptions;  ///< values that were inferred, in words
+
+  /// Whether the files of the robot state the stiffness of all soles.
+  bool states_softness_of_soles() const {
+    return std::all_of(soles.begin(), soles.end(),
+                       [](const auto& sole) { return sole.second.states_softness(); });
+  }
 };
 
 }  // namespace ayumi

@@ -402,9 +402,7 @@ std::string softness_of_soles(const RobotModel& model, const std::string& plant)
                     three_digits(1e-3 * sole.stiffness) + " kN/m, damping time " +
                     three_digits(1e3 * sole.damping_time) + " ms");
   }
-  const auto& stated = model.description().soles;
-  const bool used = std::all_of(stated.begin(), stated.end(),
-                                [](const auto& sole) { return sole.second.states_softness(); });
+  const bool used = model.description().states_softness_of_soles();
   return text::join(soles, "; ") +
          (plant == "ayumi" ? ""
           : used ? ". The plant " + plant + " uses these values along the normal of the sole only"
